@@ -26,30 +26,31 @@ void append(Evaluation step, double h, FractionalSteps& steps) {
 constexpr double kMinArea = 1e-2;
 
 /// One step of the midpoint rule, or several smaller ones.
+/// @param X      shape before the first step, which `steps` does not hold.
 /// @param half   shape at the half step if it is known, else empty.
 /// @param ahead  shape whose Laplacian predicts the half step; null: that of the step's start.
-void midpointStep(LaplacianBuilder& laplacians, StepEvaluator& evaluate, double h, double smallest,
-                  Vertices half, const Vertices* ahead, const Progress& progress,
-                  FractionalSteps& steps) {
+void midpointStep(LaplacianBuilder& laplacians, StepEvaluator& evaluate, const Vertices& X,
+                  double h, double smallest, Vertices half, const Vertices* ahead,
+                  const Progress& progress, FractionalSteps& steps) {
+    const Vertices& start = steps.sizes.empty() ? X : steps.X;
     try {
         double area = laplacians.inputMass().sum();
         if (half.rows() == 0) {
-            laplacians.update(ahead != nullptr ? *ahead : steps.X);
+            laplacians.update(ahead != nullptr ? *ahead : start);
             area = laplacians.area();
-            half =
-                evaluate.predict(laplacians.current(), steps.X, {0.5 * h}, progress.part(0.0, 0.5))
-                    .Y.front();
+            half = evaluate.predict(laplacians.current(), start, {0.5 * h}, progress.part(0.0, 0.5))
+                       .Y.front();
         }
         laplacians.update(half);
         half.resize(0, 3);
         if (laplacians.area() < kMinArea * area)
             throw SolverFailure(ErrorCode::ShrinksToNothing,
                                 "the whole surface shrinks to nothing in half a step");
-        append(evaluate(laplacians.current(), steps.X, h, progress.part(0.5, 1.0)), h, steps);
+        append(evaluate(laplacians.current(), start, h, progress.part(0.5, 1.0)), h, steps);
     } catch (const SolverFailure&) {
         if (0.5 * h < smallest) throw;
         for (const double from : {0.0, 0.5})
-            midpointStep(laplacians, evaluate, 0.5 * h, smallest, {}, nullptr,
+            midpointStep(laplacians, evaluate, X, 0.5 * h, smallest, {}, nullptr,
                          progress.part(from, from + 0.5), steps);
     }
 }
@@ -90,7 +91,7 @@ FractionalSteps midpointSteps(LaplacianBuilder& laplacians, StepEvaluator& evalu
                               const Vertices& X, int K, int finest, const Progress& progress,
                               Vertices firstHalf, const Vertices* firstQuarter) {
     const double smallest = (1.0 - 1e-9) / finest;
-    FractionalSteps steps{X, {}};
+    FractionalSteps steps;
     Vertices before, quarter;
     for (int step = 0; step < K; ++step) {
         const double from = static_cast<double>(step) / K;
@@ -100,10 +101,10 @@ FractionalSteps midpointSteps(LaplacianBuilder& laplacians, StepEvaluator& evalu
             quarter = 1.25 * steps.X - 0.25 * before;
             ahead = &quarter;
         }
-        if (firstQuarter != nullptr) before = steps.X;
+        if (firstQuarter != nullptr) before = step == 0 ? X : steps.X;
         const Progress stage = progress.part(from, (step + 1.0) / K, nameOf(step, K));
         try {
-            midpointStep(laplacians, evaluate, 1.0 / K, smallest, std::exchange(firstHalf, {}),
+            midpointStep(laplacians, evaluate, X, 1.0 / K, smallest, std::exchange(firstHalf, {}),
                          ahead, stage, steps);
         } catch (const SolverFailure& failure) {
             throw failureDuring(failure, "at " + std::to_string(static_cast<int>(100.0 * from)) +
