@@ -162,6 +162,25 @@ def _draw_signed(row: Row, caption: str, path: Path) -> None:
     sheet.save(path)
 
 
+def bounded(mesh: MeshFile) -> Drawing:
+    """Show a statue after a low-pass, and where a bound on displacements is reached: no ridge."""
+    V, F = load_arrays(mesh("lionstatue.obj"))
+    free, _ = filter_mesh(V, F, feature_size="8%")
+    limited, report = filter_mesh(V, F, feature_size="8%", max_displacement="0.5%")
+    moved = [np.linalg.norm(Y - V, axis=1) for Y in (free, limited)]
+    bound = 0.005 * diagonal(V)
+    panels = [
+        Panel("statue", V, F),
+        Panel("low-pass 8 %", free, F, np.clip(moved[0] / bound, *SHADES)),
+        Panel("moved by .5 % at most", limited, F),
+        Panel("red: at the bound", limited, F, np.clip(moved[1] / bound, *SHADES)),
+    ]
+    numbers = displacement(V, F, limited)
+    numbers["without a bound, %"] = 100 * float(moved[0].max()) / diagonal(V)
+    numbers["bound reached, % of the surface"] = 100 * report["limited_share"]
+    return _drawing(numbers, Row(panels, View()))
+
+
 def creases(mesh: MeshFile) -> Drawing:
     """Show machine parts with noise, and after a low-pass without and with a crease angle."""
     fandisk, of_fandisk = _creases(mesh("fandisk.off"), 0.1)
@@ -270,6 +289,7 @@ PICTURES: dict[str, Callable[[MeshFile], Drawing]] = {
     "equalizer": equalizer,
     "selection": selection,
     "color_by_displacement": color_by_displacement,
+    "max_displacement": bounded,
     "creases": creases,
     "quality": quality,
     "colors": colors,

@@ -42,9 +42,57 @@ MeshLengths lengthsOf(const Vertices& V, const Faces& F) {
     return lengths;
 }
 
+namespace {
+
+std::vector<bool> usedBy(const Faces& F, Index n) {
+    std::vector<bool> isUsed(static_cast<std::size_t>(n), false);
+    for (const int i : F.reshaped()) isUsed[i] = true;
+    return isUsed;
+}
+
+/// The lowest of the used coordinates, times a sign, along an axis, and how many vertices have it;
+/// none unless the others are farther from it than from each other.
+std::pair<double, Index> farthest(const Vertices& V, const std::vector<bool>& isUsed, int axis,
+                                  double sign) {
+    constexpr double kNone = std::numeric_limits<double>::infinity();
+    double lowest = kNone, next = kNone, highest = -kNone;
+    Index count = 0;
+    for (Index i = 0; i < V.rows(); ++i) {
+        if (!isUsed[i]) continue;
+        const double at = sign * V(i, axis);
+        highest = std::max(highest, at);
+        if (at < lowest) {
+            next = lowest;
+            lowest = at;
+            count = 0;
+        } else if (at > lowest) {
+            next = std::min(next, at);
+        }
+        count += at == lowest;
+    }
+    if (!(next < highest) || !(next - lowest > highest - next)) count = 0;
+    return {lowest, count};
+}
+
+/// Whether each vertex is one of these, along any axis.
+std::vector<bool> farVertices(const Vertices& V, const Faces& F) {
+    const std::vector<bool> isUsed = usedBy(F, V.rows());
+    std::vector<bool> isFar(isUsed.size(), false);
+    for (const int axis : {0, 1, 2})
+        for (const double sign : {1.0, -1.0}) {
+            const auto [lowest, count] = farthest(V, isUsed, axis, sign);
+            for (Index i = 0; count > 0 && i < V.rows(); ++i)
+                if (isUsed[i] && sign * V(i, axis) == lowest) isFar[i] = true;
+        }
+    return isFar;
+}
+
+}  // namespace
+
 double meanEdgeLength(const Vertices& V, const Faces& F) {
-    // Walls around the cells of a terrain without data are 100 to 10,000 cells long; of the sides
-    // of clean parts by CAD, which are long and short too, none is 64 times their median.
+    // Walls around the cells of a terrain without data are 100 to 10,000 cells long, sides of parts
+    // by CAD up to 48 and 215 times their median; but these lead to no vertices far from all
+    // others.
     constexpr int kLonger = 6;  // by exponents of 2
     constexpr int kExponents = 4096;
     const auto length = [&](Index t, int c) {
@@ -69,38 +117,25 @@ double meanEdgeLength(const Vertices& V, const Faces& F) {
         below += counts[median++];
     Index longer = 0;
     for (int e = median + kLonger + 1; e < kExponents; ++e) longer += counts[e];
-    if (longer == 0) return F.rows() > 0 ? sum / (3.0 * static_cast<double>(F.rows())) : 0.0;
-    sum = 0.0;
-    for (Index t = 0; t < F.rows(); ++t)
-        for (int c = 0; c < 3; ++c)
-            if (const double side = length(t, c);
-                exponentOf(side) + kExponents / 2 <= median + kLonger)
-                sum += side;
-    return sum / static_cast<double>(3 * F.rows() - longer);
+    Index walls = 0;
+    const std::vector<bool> isApart = longer > 0 ? farVertices(V, F) : std::vector<bool>();
+    for (Index t = 0; longer > 0 && t < F.rows(); ++t)
+        for (int c = 0; c < 3; ++c) {
+            if (isApart[F(t, c)] == isApart[F(t, (c + 1) % 3)]) continue;
+            const double side = length(t, c);
+            if (exponentOf(side) + kExponents / 2 <= median + kLonger) continue;
+            sum -= side;
+            ++walls;
+        }
+    return F.rows() > 0 ? sum / static_cast<double>(3 * F.rows() - walls) : 0.0;
 }
 
 MeshLengths::Filler fillerOf(const Vertices& V, const Faces& F) {
-    std::vector<bool> isUsed(static_cast<std::size_t>(V.rows()), false);
-    for (const int i : F.reshaped()) isUsed[i] = true;
+    const std::vector<bool> isUsed = usedBy(F, V.rows());
     for (const int axis : {2, 1, 0})
         for (const double sign : {1.0, -1.0}) {
-            constexpr double kNone = std::numeric_limits<double>::infinity();
-            double lowest = kNone, next = kNone, highest = -kNone;
-            Index count = 0;
-            for (Index i = 0; i < V.rows(); ++i) {
-                if (!isUsed[i]) continue;
-                const double at = sign * V(i, axis);
-                highest = std::max(highest, at);
-                if (at < lowest) {
-                    next = lowest;
-                    lowest = at;
-                    count = 0;
-                } else if (at > lowest) {
-                    next = std::min(next, at);
-                }
-                count += at == lowest;
-            }
-            if (count < 2 || !(next < highest) || !(next - lowest > highest - next)) continue;
+            const auto [lowest, count] = farthest(V, isUsed, axis, sign);
+            if (count < 2) continue;
             double all = 0.0, seen = 0.0;
             bool hasWall = false;
             for (Index t = 0; t < F.rows() && !hasWall; ++t) {

@@ -28,8 +28,9 @@ struct MeshLengths {
 /// @param F  m x 3 indices in [0, n); n and m may be 0.
 MeshLengths lengthsOf(const Vertices& V, const Faces& F);
 
-/// Mean side length over all triangles, counting interior edges twice; 0 without triangles. Sides
-/// that are more than 64 times as long as half of all are left out: walls around missing data.
+/// Mean side length over all triangles, counting interior edges twice; 0 without triangles. Left
+/// out are walls around missing data: sides that are more than 64 times as long as half of all, and
+/// lead to the lowest or highest vertices, from which all others are farther than from each other.
 double meanEdgeLength(const Vertices& V, const Faces& F);
 
 /// Finds the lowest or highest coordinate of a height field, if several vertices have it, the

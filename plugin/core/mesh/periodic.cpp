@@ -11,13 +11,19 @@ namespace spectral {
 
 namespace {
 
-/// Vertices of the boundary.
-std::vector<bool> onBoundary(const Vertices& V, const Faces& F) {
-    std::vector<bool> is(static_cast<std::size_t>(V.rows()), false);
+/// An edge of the boundary, and the third corner of its triangle.
+struct Rim {
+    Index i, j, inner;
+};
+
+std::vector<Rim> rimsOf(const Faces& F) {
+    std::vector<Rim> rims;
     SidesByEdge(F).forEachEdge([&](auto first, auto end) {
-        if (end - first == 1) is[first->low] = is[first->high] = true;
+        if (end - first != 1) return;
+        const int t = first->face(), c = first->corner();
+        rims.push_back({F(t, c), F(t, (c + 1) % 3), F(t, (c + 2) % 3)});
     });
-    return is;
+    return rims;
 }
 
 }  // namespace
@@ -31,6 +37,9 @@ std::vector<std::array<Index, 2>> periodicPairs(const Vertices& V, const Faces& 
     const double round = kRoundOff * boundingBoxDiagonal(V);
     if ((high - low).minCoeff() <= round) return pairs;  // a flat rectangle is no cell
     std::vector<bool> isBoundary;
+    std::vector<Rim> rims;
+    int cells = 0;        // axes along which there are pairs
+    bool isTube = false;  // along the last of them
     for (int axis = 0; axis < 3; ++axis) {
         using Placed = std::pair<std::array<double, 2>, Index>;
         const auto side = [&](double at) {
@@ -52,7 +61,9 @@ std::vector<std::array<Index, 2>> periodicPairs(const Vertices& V, const Faces& 
         };
         if (isBoundary.empty()) {
             if (side(low[axis]).size() < kFewest || side(high[axis]).size() < kFewest) continue;
-            isBoundary = onBoundary(V, F);
+            rims = rimsOf(F);
+            isBoundary.resize(static_cast<std::size_t>(V.rows()), false);
+            for (const Rim& rim : rims) isBoundary[rim.i] = isBoundary[rim.j] = true;
         }
         const std::vector<Placed> a = side(low[axis]), b = side(high[axis]);
         if (a.size() < kFewest || a.size() != b.size()) continue;
@@ -60,8 +71,23 @@ std::vector<std::array<Index, 2>> periodicPairs(const Vertices& V, const Faces& 
         for (const Placed& one : a)
             if (const Index other = partner(one, b); other >= 0)
                 pairs.push_back({one.second, other});
-        if (pairs.size() - before < a.size()) pairs.resize(before);
+        const auto isIn = [&](const Rim& rim, double at) {
+            return std::abs(V(rim.i, axis) - at) <= round && std::abs(V(rim.j, axis) - at) <= round;
+        };
+        const bool isWall = std::any_of(rims.begin(), rims.end(), [&](const Rim& rim) {
+            return (isIn(rim, low[axis]) && V(rim.inner, axis) - low[axis] <= round) ||
+                   (isIn(rim, high[axis]) && high[axis] - V(rim.inner, axis) <= round);
+        });
+        if (isWall || pairs.size() - before < a.size()) {
+            pairs.resize(before);
+            continue;
+        }
+        ++cells;
+        isTube = std::all_of(rims.begin(), rims.end(), [&](const Rim& rim) {
+            return isIn(rim, low[axis]) || isIn(rim, high[axis]);
+        });
     }
+    if (cells == 1 && isTube) pairs.clear();
     return pairs;
 }
 

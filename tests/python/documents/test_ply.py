@@ -345,3 +345,12 @@ def test_lists_of_several_lengths_at_the_vertices_are_kept(
         np.testing.assert_array_equal(after["vertex"][name], before["vertex"][name])
     if order != "=":
         assert target.stat().st_size == source.stat().st_size
+        moved = document.parts[0].vertices + np.linspace(1e-7, 2e-7, 12).reshape(4, 3)
+        (warning,) = document.save(target, [moved])
+        assert "double precision" in warning
+        after = PlyData.read(target)
+        found = np.column_stack([after["vertex"][name] for name in "xyz"])
+        np.testing.assert_array_equal(found, moved)
+        assert after["vertex"]["age"].tolist() == [4, 5, 6, 7]
+        assert [one.tolist() for one in after["vertex"]["views"]] == [one.tolist() for one in views]
+        np.testing.assert_array_equal(read(target).parts[0].faces, document.parts[0].faces)

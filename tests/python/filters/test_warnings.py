@@ -355,6 +355,20 @@ def test_a_periodic_cell_that_loses_its_match_is_told() -> None:
     assert not any("periodic" in text for text in filter_mesh(V, F)[1]["warnings"])
 
 
+def test_neither_a_tube_nor_a_duct_is_a_periodic_cell() -> None:
+    around, along = np.meshgrid(np.arange(32), np.arange(20), indexing="ij")
+    next_ = (around[:, :-1] + 1) % 32
+    a, b = 20 * around[:, :-1] + along[:, :-1], 20 * next_ + along[:, :-1]
+    F = np.vstack([np.stack([a, b, b + 1], -1), np.stack([a, b + 1, a + 1], -1)]).reshape(-1, 3)
+    angle = 2 * np.pi * around / 32
+    x, y = np.cos(angle), np.sin(angle)
+    for side in (1, np.maximum(abs(x), abs(y))):
+        V = np.stack([x / side, y / side, along / 5], axis=-1).reshape(-1, 3)
+        _, report = filter_mesh(V, F)
+        assert report["max_displacement"] > 0
+        assert not any("periodic" in text for text in report["warnings"])
+
+
 def test_a_triangle_of_equal_points_is_ignored_and_counted() -> None:
     V, F = cells(20, np.random.default_rng(5).normal(size=400))
     expected, _ = filter_mesh(V, F)

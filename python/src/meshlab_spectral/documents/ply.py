@@ -25,7 +25,6 @@ from meshlab_spectral.documents.causes import (
 )
 from meshlab_spectral.documents.digits import (
     digits_for,
-    precision_warnings,
     rounding_loss,
     widening_warnings,
 )
@@ -83,15 +82,12 @@ class PlyDocument(Document):
         loss = rounding_loss(before, after) if "f4" in types else None
         if (after != before).any() and any(type_[0] != "f" for type_ in types):
             loss = "the file has integers"
-        told = widening_warnings(loss)
-        if self.places is not None:
-            told = precision_warnings(before, after, target.name) if "f4" in types else []
         with target.open("wb") as file:
             if (after != before).any():
-                self._write(file, after, bool(loss) and self.places is None)
+                self._write(file, after, bool(loss))
             else:
                 file.write(self.content)
-        return told + copy_side_files(self.path, target, self.side_files())
+        return widening_warnings(loss) + copy_side_files(self.path, target, self.side_files())
 
     def side_files(self) -> list[str]:  # noqa: D102
         return [os.fsdecode(name.rstrip()) for name in _TEXTURE.findall(self.header)]
@@ -108,23 +104,34 @@ class PlyDocument(Document):
             words = [(rows, self.first[a], *pair, digits) for a, pair in changes.items()]
             write_patched(file, self.content, words, start)
         elif self.places is not None:
-            file.write(memoryview(self._patched(changes))[start:])
+            file.write(memoryview(self._patched(changes, self.places, is_wide))[start:])
         else:
             content, end = memoryview(self.content), self.begin + rows.nbytes
             new = _with_columns(rows, changes, self.ply.byte_order if is_wide else None)
             file.writelines([content[start : self.begin], new, content[end:]])
 
-    def _patched(self, changes: _Changes) -> bytearray:
+    def _patched(
+        self, changes: _Changes, places: dict[str, Indices], is_wide: bool
+    ) -> NDArray[np.uint8]:
         """Return the bytes of the file with new numbers in rows of several lengths."""
-        assert self.places is not None
-        content = bytearray(self.content)
-        bytes_ = np.frombuffer(content, np.uint8)
+        vertex, content = self.ply["vertex"], np.frombuffer(self.content, np.uint8).copy()
+        types = {name: vertex.ply_property(name).val_dtype for name in places}
+        if is_wide:
+            lacking = np.repeat(
+                [8 - np.dtype(types[name]).itemsize for name in AXES], len(places["x"])
+            )
+            at = np.concatenate([places[name] for name in AXES])
+            order = np.argsort(at)
+            at, lacking = at[order], lacking[order]
+            content = np.insert(content, np.repeat(at, lacking), 0)
+            added = np.append(0, np.cumsum(lacking))
+            places = {name: one + added[np.searchsorted(at, one)] for name, one in places.items()}
+            types |= dict.fromkeys(AXES, "f8")
         for names, (_, after) in changes.items():
             for name, column in zip(names, after.T, strict=True):
-                type_ = self.ply["vertex"].ply_property(name).val_dtype
-                new = np.ascontiguousarray(column, self.ply.byte_order + type_)
-                at = self.places[name][:, None] + np.arange(new.itemsize)
-                bytes_[at] = new.view(np.uint8).reshape(len(new), -1)
+                new = np.ascontiguousarray(column, self.ply.byte_order + types[name])
+                bytes_ = places[name][:, None] + np.arange(new.itemsize)
+                content[bytes_] = new.view(np.uint8).reshape(len(new), -1)
         return content
 
 
@@ -341,10 +348,6 @@ def _check_vertices(path: Path, ply: PlyData, table: _Table) -> None:
     ):
         what = "has vertices without x, y, z side by side, or with uneven lists before them"
         raise unsupported(path, what, "export it again with x, y and z as the first properties")
-    axes = {ply["vertex"].ply_property(name).val_dtype[0] for name in AXES}
-    if _is_uneven(table) and not ply.text and axes != {"f"}:
-        what = "has integers as coordinates, and lists of several lengths"
-        raise unsupported(path, what, "export it again without these lists")
 
 
 def _is_uneven(table: _Table, before: str | None = None) -> bool:
