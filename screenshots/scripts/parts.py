@@ -171,7 +171,7 @@ def bounded(mesh: MeshFile) -> Drawing:
     bound = 0.005 * diagonal(V)
     panels = [
         Panel("statue", V, F),
-        Panel("low-pass 8 %", free, F, np.clip(moved[0] / bound, *SHADES)),
+        Panel("low-pass 8 %", free, F),
         Panel("moved by .5 % at most", limited, F),
         Panel("red: at the bound", limited, F, np.clip(moved[1] / bound, *SHADES)),
     ]

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <utility>
 
 #include "core/mesh/measures.h"
@@ -16,6 +17,41 @@ struct Rim {
     Index i, j, inner;
 };
 
+using Pair = std::array<Index, 2>;
+
+constexpr double kRoundOff = 1e-6;  // of the diagonal
+constexpr std::size_t kFewest = 3;  // vertices of a side: fewer match by chance
+
+/// Whether the surface stays within the sides, as a duct's walls do, in place of crossing them: at
+/// most edges between vertices of a side, the inner corner is no further in.
+bool isWall(const Vertices& V, const std::vector<Rim>& rims, const std::vector<Pair>& pairs,
+            int axis) {
+    std::vector<int> side(static_cast<std::size_t>(V.rows()), 0);
+    for (const auto& [low, high] : pairs) {
+        side[low] = 1;
+        side[high] = -1;
+    }
+    const double round = kRoundOff * boundingBoxDiagonal(V);
+    int crossing = 0, all = 0;
+    for (const Rim& rim : rims) {
+        if (side[rim.i] == 0 || side[rim.i] != side[rim.j]) continue;
+        const double middle = 0.5 * (V(rim.i, axis) + V(rim.j, axis));
+        crossing += side[rim.i] * (V(rim.inner, axis) - middle) > round;
+        ++all;
+    }
+    return 2 * crossing <= all;
+}
+
+/// Whether a consistently oriented surface has no boundary: around each vertex, corners that follow
+/// and corners that precede it are the same.
+bool isClosed(Index n, const Faces& F) {
+    Eigen::Matrix<std::int64_t, Eigen::Dynamic, 1> sums;
+    sums.setZero(n);
+    for (Index t = 0; t < F.rows(); ++t)
+        for (int c = 0; c < 3; ++c) sums[F(t, c)] += F(t, (c + 1) % 3) - F(t, (c + 2) % 3);
+    return (sums.array() == 0).all();
+}
+
 std::vector<Rim> rimsOf(const Faces& F) {
     std::vector<Rim> rims;
     SidesByEdge(F).forEachEdge([&](auto first, auto end) {
@@ -28,16 +64,65 @@ std::vector<Rim> rimsOf(const Faces& F) {
 
 }  // namespace
 
+namespace {
+
+/// The same for sides that are not flat, as of a cell that was cut and then moved: every vertex of
+/// the boundary has a partner, along two axes or three.
+std::vector<Pair> pairsOfCells(const Vertices& V, const std::vector<Rim>& rims) {
+    std::vector<Index> boundary;
+    for (const Rim& rim : rims) boundary.push_back(rim.i);
+    std::sort(boundary.begin(), boundary.end());
+    boundary.erase(std::unique(boundary.begin(), boundary.end()), boundary.end());
+    const double round = kRoundOff * boundingBoxDiagonal(V);
+    std::vector<Pair> pairs;
+    std::vector<bool> isPaired(static_cast<std::size_t>(V.rows()), false);
+    int cells = 0;
+    for (int axis = 0; axis < 3; ++axis) {
+        const int u = (axis + 1) % 3, v = (axis + 2) % 3;
+        constexpr double kSlant = 0.7548776662466927;  // of no grid: places of one key are one
+        const auto key = [&](Index i) { return V(i, u) + kSlant * V(i, v); };
+        std::sort(boundary.begin(), boundary.end(), [&](Index i, Index j) {
+            return std::make_pair(key(i), i) < std::make_pair(key(j), j);
+        });
+        std::vector<Pair> found;
+        double period = 0.0;
+        for (std::size_t k = 0; k < boundary.size(); ++k)
+            for (std::size_t l = k + 1; l < boundary.size(); ++l) {
+                Index i = boundary[k], j = boundary[l];
+                if (key(j) - key(i) > 2.0 * round) break;
+                if (std::abs(V(j, u) - V(i, u)) > round || std::abs(V(j, v) - V(i, v)) > round)
+                    continue;
+                if (V(i, axis) > V(j, axis)) std::swap(i, j);
+                found.push_back({i, j});
+                period = std::max(period, V(j, axis) - V(i, axis));
+            }
+        found.erase(std::remove_if(found.begin(), found.end(),
+                                   [&](const Pair& pair) {
+                                       return V(pair[1], axis) - V(pair[0], axis) < period - round;
+                                   }),
+                    found.end());
+        if (found.size() < kFewest || period <= round || isWall(V, rims, found, axis)) continue;
+        ++cells;
+        for (const auto& [i, j] : found) isPaired[i] = isPaired[j] = true;
+        pairs.insert(pairs.end(), found.begin(), found.end());
+    }
+    const bool areAll =
+        std::all_of(boundary.begin(), boundary.end(), [&](Index i) { return isPaired[i]; });
+    return cells > 1 && areAll ? pairs : std::vector<Pair>();
+}
+
+}  // namespace
+
 std::vector<std::array<Index, 2>> periodicPairs(const Vertices& V, const Faces& F) {
-    constexpr double kRoundOff = 1e-6;  // of the diagonal
-    constexpr std::size_t kFewest = 3;  // vertices of a side: fewer match by chance
-    std::vector<std::array<Index, 2>> pairs;
+    std::vector<Pair> pairs;
     if (V.rows() == 0) return pairs;
     const Eigen::RowVector3d low = V.colwise().minCoeff(), high = V.colwise().maxCoeff();
     const double round = kRoundOff * boundingBoxDiagonal(V);
     if ((high - low).minCoeff() <= round) return pairs;  // a flat rectangle is no cell
-    std::vector<bool> isBoundary;
-    std::vector<Rim> rims;
+    if (isClosed(V.rows(), F)) return pairs;
+    const std::vector<Rim> rims = rimsOf(F);
+    std::vector<bool> isBoundary(static_cast<std::size_t>(V.rows()), false);
+    for (const Rim& rim : rims) isBoundary[rim.i] = isBoundary[rim.j] = true;
     int cells = 0;        // axes along which there are pairs
     bool isTube = false;  // along the last of them
     for (int axis = 0; axis < 3; ++axis) {
@@ -45,8 +130,7 @@ std::vector<std::array<Index, 2>> periodicPairs(const Vertices& V, const Faces& 
         const auto side = [&](double at) {
             std::vector<Placed> found;
             for (Index i = 0; i < V.rows(); ++i)
-                if (std::abs(V(i, axis) - at) <= round &&
-                    (isBoundary.empty() || isBoundary[static_cast<std::size_t>(i)]))
+                if (isBoundary[i] && std::abs(V(i, axis) - at) <= round)
                     found.push_back({{V(i, (axis + 1) % 3), V(i, (axis + 2) % 3)}, i});
             std::sort(found.begin(), found.end());
             return found;
@@ -59,12 +143,6 @@ std::vector<std::array<Index, 2>> periodicPairs(const Vertices& V, const Faces& 
                 if (std::abs(at->first[1] - one.first[1]) <= round) return at->second;
             return -1;
         };
-        if (isBoundary.empty()) {
-            if (side(low[axis]).size() < kFewest || side(high[axis]).size() < kFewest) continue;
-            rims = rimsOf(F);
-            isBoundary.resize(static_cast<std::size_t>(V.rows()), false);
-            for (const Rim& rim : rims) isBoundary[rim.i] = isBoundary[rim.j] = true;
-        }
         const std::vector<Placed> a = side(low[axis]), b = side(high[axis]);
         if (a.size() < kFewest || a.size() != b.size()) continue;
         const std::size_t before = pairs.size();
@@ -74,11 +152,9 @@ std::vector<std::array<Index, 2>> periodicPairs(const Vertices& V, const Faces& 
         const auto isIn = [&](const Rim& rim, double at) {
             return std::abs(V(rim.i, axis) - at) <= round && std::abs(V(rim.j, axis) - at) <= round;
         };
-        const bool isWall = std::any_of(rims.begin(), rims.end(), [&](const Rim& rim) {
-            return (isIn(rim, low[axis]) && V(rim.inner, axis) - low[axis] <= round) ||
-                   (isIn(rim, high[axis]) && high[axis] - V(rim.inner, axis) <= round);
-        });
-        if (isWall || pairs.size() - before < a.size()) {
+        const std::vector<Pair> found(pairs.begin() + static_cast<std::ptrdiff_t>(before),
+                                      pairs.end());
+        if (found.size() < a.size() || isWall(V, rims, found, axis)) {
             pairs.resize(before);
             continue;
         }
@@ -88,7 +164,7 @@ std::vector<std::array<Index, 2>> periodicPairs(const Vertices& V, const Faces& 
         });
     }
     if (cells == 1 && isTube) pairs.clear();
-    return pairs;
+    return pairs.empty() ? pairsOfCells(V, rims) : pairs;
 }
 
 double largestMismatch(const std::vector<std::array<Index, 2>>& pairs, const Vertices& before,

@@ -355,6 +355,25 @@ def test_a_periodic_cell_that_loses_its_match_is_told() -> None:
     assert not any("periodic" in text for text in filter_mesh(V, F)[1]["warnings"])
 
 
+def test_a_periodic_cell_whose_sides_are_not_flat_is_told() -> None:
+    """Nodes were moved along the normals, opposite ones alike: the box is larger than the cell."""
+    V, F = cells(31, np.random.default_rng(5).normal(size=31 * 31))
+    sides = np.random.default_rng(6).normal(scale=0.1, size=(2, 30, 3))
+    grid = V.reshape(31, 31, 3)
+    for line in (grid[:, 0], grid[:, 30]):
+        line[:30] = line[:30] * [1, 1, 0] + sides[0]
+    for line in (grid[0], grid[30]):
+        line[:30] = line[:30] * [1, 1, 0] + sides[1]
+    step = grid[30, 1] - grid[0, 1]
+    other = grid[1, 30] - grid[1, 0]
+    corner = grid[0, 0].copy()
+    for i, j in ((30, 0), (0, 30), (30, 30)):
+        grid[i, j] = corner + (i > 0) * step + (j > 0) * other
+    _, report = filter_mesh(V, F)
+    (warning,) = (text for text in report["warnings"] if "periodic" in text)
+    assert warning.startswith("62 pairs of vertices on opposite sides matched by a translation")
+
+
 def test_neither_a_tube_nor_a_duct_is_a_periodic_cell() -> None:
     around, along = np.meshgrid(np.arange(32), np.arange(20), indexing="ij")
     next_ = (around[:, :-1] + 1) % 32

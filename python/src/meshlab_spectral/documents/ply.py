@@ -104,7 +104,7 @@ class PlyDocument(Document):
             words = [(rows, self.first[a], *pair, digits) for a, pair in changes.items()]
             write_patched(file, self.content, words, start)
         elif self.places is not None:
-            file.write(memoryview(self._patched(changes, self.places, is_wide))[start:])
+            file.write(self._patched(changes, self.places, is_wide)[start:].data)
         else:
             content, end = memoryview(self.content), self.begin + rows.nbytes
             new = _with_columns(rows, changes, self.ply.byte_order if is_wide else None)
