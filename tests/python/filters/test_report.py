@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -22,6 +23,8 @@ from helpers import (
 )
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
+from meshlab_spectral import FilterOptions
+from meshlab_spectral.filters.running import run
 
 ROUND_OFF = 1e-12  # of the diagonal
 
@@ -253,3 +256,23 @@ def test_where_every_vertex_is_fixed_nothing_moves() -> None:
     np.testing.assert_array_equal(Y, V)
     assert report["max_displacement"] == 0
     assert report["fixed_vertices"] == 3
+
+
+def test_the_log_names_creases_that_are_rounded_by_how_far() -> None:
+    def text_of(mesh_set: pymeshlab.MeshSet, **options: Any) -> str:
+        mesh = mesh_set.current_mesh()
+        V, F = mesh.vertex_matrix(), mesh.face_matrix()
+        done = run(FILTER, V, F, FilterOptions(**options).core_parameters())
+        if (line := re.search(r"creases: .* by up to (\S+) ", done.text)) is not None:
+            on = ((V == V.min(axis=0)) | (V == V.max(axis=0))).sum(axis=1) == 2  # no corners
+            moved = np.linalg.norm(done.vertices - V, axis=1)[on].max()
+            assert float(line[1]) == pytest.approx(moved, rel=0.05)
+        return done.text
+
+    block, ball = pymeshlab.MeshSet(), pymeshlab.MeshSet()
+    block.create_cube()
+    block.meshing_surface_subdivision_midpoint(iterations=5, threshold=pymeshlab.PercentageValue(0))
+    ball.create_sphere(subdiv=5)
+    assert "creases: rounded" in text_of(block)
+    assert "creases" not in text_of(block, crease_angle=50).replace("crease)", "")
+    assert "creases" not in text_of(ball)
