@@ -17,6 +17,10 @@ if ! command -v apt-get >/dev/null || ! command -v dpkg-query >/dev/null; then
     exit 0
 fi
 
+# Such as npm, which other builds of Node hold and conflict with.
+# shellcheck disable=SC2016  # dpkg-query's variables, not the shell's
+provided=" $(dpkg-query --show --showformat='${db:Status-Abbrev},${Provides}\n' | sed -n 's/^ii *,//p' | tr ',\n' '  ') "
+
 missing=''
 for package in $packages; do
     # A removed package may still be known to dpkg: only its status tells.
@@ -24,7 +28,12 @@ for package in $packages; do
     status=$(dpkg-query --show --showformat='${Status}' "$package" 2>/dev/null || true)
     case $status in
         'install ok installed' | 'hold ok installed') ;;
-        *) missing="$missing $package" ;;
+        *)
+            case $provided in
+                *" $package "*) ;;
+                *) missing="$missing $package" ;;
+            esac
+            ;;
     esac
 done
 [ -n "$missing" ] || exit 0

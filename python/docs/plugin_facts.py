@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from typing import Any
 
 import meshlab_spectral
+import numpy as np
 import pymeshlab
 from meshlab_spectral import _core
 from meshlab_spectral.plugin.library import function_of
@@ -142,12 +143,24 @@ def _sphere(subdivisions: int) -> Any:
     return mesh_set
 
 
+def _height_map() -> pymeshlab.MeshSet:
+    """Waves on a square grid: entries that only maps have."""
+    n = 60
+    y, x = np.mgrid[:n, :n].reshape(2, -1) / n
+    corner = np.arange(n * (n - 1)).reshape(-1, n)[:, :-1].reshape(-1, 1)
+    faces = np.vstack([corner + [0, 1, n + 1], corner + [0, n + 1, n]])
+    mesh_set = pymeshlab.MeshSet()
+    waves = 0.01 * np.sin(60 * x) * np.sin(40 * y)
+    mesh_set.add_mesh(pymeshlab.Mesh(np.column_stack([x, y, waves]), faces))
+    return mesh_set
+
+
 def _report(name: str) -> dict[str, str]:
     """Return the entries of a filter's report, and what kinds of values they are."""
     kinds = {bool: "true or false", int: "integer", float: "number"}
     entries: dict[str, str] = {}
-    for options in ({}, MORE_RUNS.get(name, {})):
-        report = _sphere(COARSE).apply_filter(name, **options)
-        for entry, value in report.items():
+    meshes = [_sphere(COARSE), _sphere(COARSE)] + [_height_map()] * ("texture" in name)
+    for mesh_set, options in zip(meshes, ({}, MORE_RUNS.get(name, {}), {}), strict=False):
+        for entry, value in mesh_set.apply_filter(name, **options).items():
             entries[entry] = kinds.get(type(value), "array")
     return entries

@@ -62,7 +62,7 @@ void spoil(Choices& choices, FilterOptions& options) {
         case 1: options.steps = -1; return;
         case 2:
             options.steps = 0;
-            options.tolerance = choices.pick({0.0, -1.0, kNan, kInfinity});
+            options.tolerance = choices.pick({-1e-9, -1.0, kNan, kInfinity});
             return;
         case 3: options.conformalShare = choices.pick({-0.1, 1.1, kNan}); return;
         case 4: F.order = choices.pick({0, -1, 65}); return;

@@ -162,7 +162,7 @@ def test_a_batch_denoises_with_every_option_of_denoise(scan: Path, tmp_path: Pat
     ("arguments", "words"),
     [
         (["--denoise", "--feature-size", "2%"], ["--feature-size is not an option of denoise"]),
-        (["--denoise", "--preset", "sharpen"], ["--preset is not an option of denoise"]),
+        (["--denoise", "--preset", "sharpen"], ["the preset sharpen is for filter"]),
         (["--recipe", "DENOISE", "--steps", "3"], ["--steps is not an option of denoise"]),
         (["--recipe", "FILTER", "--denoise"], ["filter.toml is for filter, not for denoise"]),
         (["--recipe", "FILTER", "--strength", "2"], ["--strength is not an option of filter"]),

@@ -227,6 +227,6 @@ def test_a_damaged_archive_is_refused(tmp_path: Path) -> None:
 
 
 def test_a_bomb_is_not_unpacked(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(budget, "_LEAST", 1 << 20)
+    monkeypatch.setattr(budget.Budget.__init__, "__defaults__", (1 << 20, 0.5))
     with pytest.raises(MeshFileError, match="would grow"):
         read(archive(tmp_path / "in.3mf", one_object() + " " * (2 << 20)))

@@ -85,6 +85,7 @@ def test_all_pictures_are_drawn_and_their_numbers_recorded(
         "meshes/stanford-bunny.obj",
         "meshes/fandisk.off",
         "meshes/gears.stl",
+        "meshes/lionstatue.obj",
         "denoise/trimstar_n3_noisy.ply",
         "denoise/trimstar_n3_clean.ply",
     ):

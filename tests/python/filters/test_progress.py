@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import io
 import sys
+import tempfile
 from collections.abc import Callable
 from importlib.util import find_spec
+from pathlib import Path
 from types import ModuleType, SimpleNamespace
 from typing import Any
 
@@ -18,8 +20,20 @@ from meshlab_spectral.filters import progress
 
 _SPHERE = pyvista.Icosphere(nsub=4)
 V, F = np.array(_SPHERE.points, dtype=float), np.array(_SPHERE.regular_faces)
+
+
+def of_file(function: Callable[..., Any], **more: Any) -> Any:
+    """Call a function that writes a file."""
+    with tempfile.TemporaryDirectory() as folder:
+        source, target = Path(folder) / "in.ply", Path(folder) / "out.ply"
+        pyvista.PolyData.from_regular_faces(V, F).save(source)
+        return function(source, target, **more)
+
+
 CALLS: dict[str, Callable[..., Any]] = {
     "filter_mesh": lambda **more: filter_mesh(V, F, **more),
+    "filter_file": lambda **more: of_file(meshlab_spectral.filter_file, **more),
+    "denoise_file": lambda **more: of_file(meshlab_spectral.denoise_file, **more),
     "denoise_mesh": lambda **more: meshlab_spectral.denoise_mesh(V, F, **more),
     "filter_scalars": lambda **more: meshlab_spectral.filter_scalars(V, F, V, **more),
     "filter_colors": lambda **more: meshlab_spectral.filter_colors(V, F, np.abs(V), **more),

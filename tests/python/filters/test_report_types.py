@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from typing import Any, get_args, get_origin, get_type_hints, is_typeddict
 
 import numpy as np
@@ -22,6 +23,9 @@ from meshlab_spectral.filters.spectrum import measure
 
 _SPHERE = pyvista.Icosphere(nsub=3)
 V, F = np.array(_SPHERE.points, dtype=float), np.array(_SPHERE.regular_faces)
+_GRID = pyvista.Plane(i_resolution=60, j_resolution=60)
+_GRID["waves"] = 0.01 * np.sin(_GRID.points[:, :2] * (60, 40)).prod(axis=1)
+WAVES = _GRID.warp_by_scalar("waves").triangulate()
 TRUNCATED: dict[str, Any] = {"spectrum": "truncated", "basis_size": 20, "steps": 1}
 # Reports without and with the entries that only some have.
 RUNS: dict[str, list[Callable[[], Any]]] = {
@@ -39,6 +43,7 @@ RUNS: dict[str, list[Callable[[], Any]]] = {
     "TextureReport": [
         lambda: surface_texture(V, F, waviness=0.5).report,
         lambda: surface_texture(V, F, waviness=0.5, form="sphere").report,
+        lambda: replace(surface_texture(WAVES), unit="mm").report,  # a height map from a file
     ],
 }
 

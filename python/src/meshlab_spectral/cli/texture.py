@@ -27,7 +27,7 @@ from meshlab_spectral.cli.filter_options import (
 from meshlab_spectral.cli.messages import errors_reported, print_error, print_result, print_warning
 from meshlab_spectral.cli.progress import progress_shown
 from meshlab_spectral.cli.report_table import table_of
-from meshlab_spectral.errors import OptionError, SpectralError
+from meshlab_spectral.errors import MeshError, OptionError, SpectralError
 from meshlab_spectral.figures.texture import draw_texture, write_texture
 from meshlab_spectral.files.formats import check_ending
 from meshlab_spectral.files.region import Region
@@ -117,6 +117,8 @@ def texture_command(
                     )
             except SpectralError as error:
                 if not many:
+                    if isinstance(error, OptionError) and not given and region == Region():
+                        raise MeshError(str(error)) from error  # the mesh's: no option was given
                     raise
                 print_error(f"{source}: {error}")
                 failed += 1

@@ -155,7 +155,9 @@ _ENDS: dict[str, Callable[[bytes], bool]] = {
     "vtu": lambda content: b"</VTKFile" in content[-1000:],
     "gii": lambda content: b"</GIFTI" in content[-1000:],
     "3mf": lambda content: b"PK\5\6" in content[-66000:],
+    "usdz": lambda content: b"PK\5\6" in content[-66000:],
     "gltf": lambda content: content.rstrip().endswith(b"}"),
+    "usda": lambda content: content.rstrip().endswith(b"}"),
     "glb": lambda content: len(content) >= int.from_bytes(content[8:12], "little") > 0,
 }
 

@@ -180,7 +180,11 @@ def read(path: Path) -> Document:
     except SpectralError:
         raise
     except (ValueError, TypeError, LookupError, RuntimeError, zipfile.BadZipFile) as error:
-        raise unreadable(path, str(error).rsplit(" : ", 1)[-1]) from error  # after its own lines
+        try:
+            message = str(error).rsplit(" : ", 1)[-1]  # after its own lines
+        except UnicodeDecodeError:  # of the library's, which quote what was read
+            message = "it holds bytes that are no text"
+        raise unreadable(path, message) from error
 
 
 def _check_layers(path: Path, entries: list[str]) -> list[str]:
