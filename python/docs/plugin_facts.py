@@ -148,7 +148,7 @@ def _height_map() -> pymeshlab.MeshSet:
     n = 60
     y, x = np.mgrid[:n, :n].reshape(2, -1) / n
     corner = np.arange(n * (n - 1)).reshape(-1, n)[:, :-1].reshape(-1, 1)
-    faces = np.vstack([corner + [0, 1, n + 1], corner + [0, n + 1, n]])
+    faces = np.vstack([corner + np.array(one) for one in ([0, 1, n + 1], [0, n + 1, n])])
     mesh_set = pymeshlab.MeshSet()
     waves = 0.01 * np.sin(60 * x) * np.sin(40 * y)
     mesh_set.add_mesh(pymeshlab.Mesh(np.column_stack([x, y, waves]), faces))
