@@ -80,7 +80,8 @@ await page.click('#sample');
 await page.waitForFunction(() => !document.getElementById('cancel').disabled);
 await shot('during_1280');
 await idle();
-assert.match(await log(), /scanner noise.*removed/);
+// Its noise is independent from vertex to vertex, .004 high.
+assert.match(await log(), /white noise.*\(0\.003[89]\d*\): removed/);
 await both('after');
 for (const kind of ['moved', 'values']) {
   await page.select('#colors', kind);
