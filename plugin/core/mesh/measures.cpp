@@ -51,14 +51,18 @@ std::vector<bool> usedBy(const Faces& F, Index n) {
 }
 
 /// The lowest of the used coordinates, times a sign, along an axis, and how many vertices have it;
-/// none unless the others are farther from it than from each other.
+/// none unless the others are farther from it than from each other, and those by more than the
+/// round-off of a plane, which is 1e-7 of its size in single precision.
 std::pair<double, Index> farthest(const Vertices& V, const std::vector<bool>& isUsed, int axis,
                                   double sign) {
     constexpr double kNone = std::numeric_limits<double>::infinity();
+    constexpr double kRoundOff = 1e-6;
+    Eigen::AlignedBox3d box;
     double lowest = kNone, next = kNone, highest = -kNone;
     Index count = 0;
     for (Index i = 0; i < V.rows(); ++i) {
         if (!isUsed[i]) continue;
+        box.extend(V.row(i).transpose());
         const double at = sign * V(i, axis);
         highest = std::max(highest, at);
         if (at < lowest) {
@@ -70,7 +74,10 @@ std::pair<double, Index> farthest(const Vertices& V, const std::vector<bool>& is
         }
         count += at == lowest;
     }
-    if (!(next < highest) || !(next - lowest > highest - next)) count = 0;
+    Eigen::Vector3d plane = box.sizes();
+    plane[axis] = 0.0;
+    const double spread = highest - next;
+    if (!(spread > kRoundOff * plane.norm()) || !(next - lowest > spread)) count = 0;
     return {lowest, count};
 }
 

@@ -7,6 +7,7 @@
 
 #include "core/mesh/measures.h"
 #include "core/mesh/sides.h"
+#include "core/mesh/surface.h"
 
 namespace spectral {
 
@@ -62,12 +63,8 @@ std::vector<Rim> rimsOf(const Faces& F) {
     return rims;
 }
 
-}  // namespace
-
-namespace {
-
-/// The same for sides that are not flat, as of a cell that was cut and then moved: every vertex of
-/// the boundary has a partner, along two axes or three.
+/// Pairs on sides that are not flat, as of a cell that was cut and then moved: every vertex of the
+/// boundary has a partner, along two axes or three.
 std::vector<Pair> pairsOfCells(const Vertices& V, const std::vector<Rim>& rims) {
     std::vector<Index> boundary;
     for (const Rim& rim : rims) boundary.push_back(rim.i);
@@ -111,18 +108,17 @@ std::vector<Pair> pairsOfCells(const Vertices& V, const std::vector<Rim>& rims) 
     return cells > 1 && areAll ? pairs : std::vector<Pair>();
 }
 
-}  // namespace
-
-std::vector<std::array<Index, 2>> periodicPairs(const Vertices& V, const Faces& F) {
-    std::vector<Pair> pairs;
-    if (V.rows() == 0) return pairs;
+/// The same for a mesh whose seams are joined.
+std::vector<Pair> pairsOfJoined(const Vertices& V, const Faces& F) {
+    if (V.rows() == 0) return {};
     const Eigen::RowVector3d low = V.colwise().minCoeff(), high = V.colwise().maxCoeff();
     const double round = kRoundOff * boundingBoxDiagonal(V);
-    if ((high - low).minCoeff() <= round) return pairs;  // a flat rectangle is no cell
-    if (isClosed(V.rows(), F)) return pairs;
+    if ((high - low).minCoeff() <= round) return {};  // a flat rectangle is no cell
+    if (isClosed(V.rows(), F)) return {};
     const std::vector<Rim> rims = rimsOf(F);
     std::vector<bool> isBoundary(static_cast<std::size_t>(V.rows()), false);
     for (const Rim& rim : rims) isBoundary[rim.i] = isBoundary[rim.j] = true;
+    std::vector<Pair> pairs;
     int cells = 0;        // axes along which there are pairs
     bool isTube = false;  // along the last of them
     for (int axis = 0; axis < 3; ++axis) {
@@ -165,6 +161,18 @@ std::vector<std::array<Index, 2>> periodicPairs(const Vertices& V, const Faces& 
     }
     if (cells == 1 && isTube) pairs.clear();
     return pairs.empty() ? pairsOfCells(V, rims) : pairs;
+}
+
+}  // namespace
+
+std::vector<std::array<Index, 2>> periodicPairs(const Vertices& V, const Faces& F) {
+    if (isClosed(V.rows(), F)) return {};
+    // The sides of a box whose faces have corners of their own are no boundary.
+    const Surface surface = joinedSurface(V, F);
+    std::vector<Pair> pairs = pairsOfJoined(surface.X, surface.F);
+    for (Pair& pair : pairs)
+        for (Index& i : pair) i = surface.vertex[i];
+    return pairs;
 }
 
 double largestMismatch(const std::vector<std::array<Index, 2>>& pairs, const Vertices& before,

@@ -131,6 +131,12 @@ def test_a_scene_of_several_files_is_refused_with_the_remedy(arc: str, tmp_path:
         read(tmp_path / "all.usda")
 
 
+def test_a_scene_of_other_shapes_is_refused_with_their_names(tmp_path: Path) -> None:
+    (tmp_path / "a.usda").write_text('#usda 1.0\ndef Cube "a" {}\ndef TetMesh "b" {}')
+    with pytest.raises(MeshFileError, match="holds no mesh, only Cube and TetMesh"):
+        read(tmp_path / "a.usda")
+
+
 @pytest.mark.parametrize("counts", ["[5]", "[-4]", "[4, 4]"])
 def test_counts_that_do_not_fit_are_told(counts: str, tmp_path: Path) -> None:
     stage = Usd.Stage.CreateNew(str(tmp_path / "a.usda"))

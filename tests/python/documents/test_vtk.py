@@ -89,6 +89,12 @@ def test_only_points_and_normals_change(name: str, binary: bool, tmp_path: Path)
     assert (tmp_path / f"saved{path.suffix}").read_bytes() == path.read_bytes()
 
 
+def test_values_after_the_name_of_a_lookup_table_are_no_count(tmp_path: Path) -> None:
+    for first in ("-1", "90000000000"):
+        path = legacy(tmp_path, "0.1234567890123456 2", f"{first} 2")
+        assert vtk.read(path).parts[0].quality[0] == float(first)
+
+
 def test_points_become_double_where_single_precision_loses_the_movement(tmp_path: Path) -> None:
     path = written(tmp_path)
     after = vtk.read(path).parts[0].vertices + 1e-9

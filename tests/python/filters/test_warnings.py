@@ -374,7 +374,11 @@ def test_a_periodic_cell_whose_sides_are_not_flat_is_told() -> None:
     assert warning.startswith("62 pairs of vertices on opposite sides matched by a translation")
 
 
-def test_neither_a_tube_nor_a_duct_is_a_periodic_cell() -> None:
+def test_neither_a_tube_nor_a_duct_nor_a_box_of_six_faces_is_a_periodic_cell() -> None:
+    cube = pyvista.Cube(clean=False).triangulate()
+    assert cube.n_points == 24
+    _, report = filter_mesh(np.array(cube.points, float), cube.regular_faces)
+    assert not any("periodic" in text for text in report["warnings"])
     around, along = np.meshgrid(np.arange(32), np.arange(20), indexing="ij")
     next_ = (around[:, :-1] + 1) % 32
     a, b = 20 * around[:, :-1] + along[:, :-1], 20 * next_ + along[:, :-1]

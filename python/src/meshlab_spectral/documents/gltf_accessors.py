@@ -26,7 +26,7 @@ from meshlab_spectral.documents.side_files import beside
 _FLOAT = 5126
 _COMPONENTS = {5120: "<i1", 5121: "<u1", 5122: "<i2", 5123: "<u2", 5125: "<u4", _FLOAT: "<f4"}
 _KINDS = {1: "SCALAR", 3: "VEC3", 4: "VEC4"}
-_FAULTS = (ArithmeticError, AttributeError, LookupError, RuntimeError, TypeError, ValueError)
+_FAULTS = (ArithmeticError, LookupError, RuntimeError, ValueError)
 Json = dict[str, Any]
 
 
@@ -38,6 +38,8 @@ def reporting_faults(path: Path) -> Iterator[None]:
             yield
     except KeyError as error:
         raise unreadable(path, f"{error} is missing or unknown in its JSON") from error
+    except (AttributeError, TypeError) as error:
+        raise unreadable(path, "a value in its JSON has the wrong type") from error
     except _FAULTS as error:
         raise unreadable(path, error) from error
 

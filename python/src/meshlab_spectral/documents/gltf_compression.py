@@ -49,7 +49,7 @@ def _without(entry: Json, name: str) -> Any:
     """Take an extension from an entry; return it, or None."""
     extensions = entry.get("extensions", {})
     found = extensions.pop(name, None)
-    if not extensions:
+    if found is not None and not extensions:
         entry.pop("extensions", None)
     return found
 

@@ -250,7 +250,11 @@ def _document(path: Path) -> Document:
     for mesh in meshes.values():
         document.add(mesh)
     if not document.parts:
-        raise unsupported(path, "holds no mesh whose points stay in time", "name a file with one")
+        shapes = sorted({prim.GetTypeName() for prim in prims if prim.IsA(UsdGeom.Gprim)})
+        what = "holds no mesh whose points stay in time"
+        if "Mesh" not in shapes:
+            what = f"holds no mesh, only {' and '.join(shapes) or 'other prims'}"
+        raise unsupported(path, what, "name a file with one")
     materials = ["materials"] * any(prim.GetTypeName() == "Material" for prim in prims)
     document.contents = [*dict.fromkeys(["units and axes", *document.contents]), *materials]
     return document

@@ -35,12 +35,14 @@ _TAG_BYTES = 800  # of what VTK makes of a tag
 _OF_VTK = 256 << 20  # bytes of its own, such as tables of threads
 _LONGEST = 18  # digits of a count
 # Numbers from which VTK allocates: attributes of its XML; in legacy files those after keywords, and
-# the columns and rows of arrays.
+# the columns and rows of arrays. After the name of a scalar's LOOKUP_TABLE there are values.
 _ATTRIBUTES = re.compile(rb"NumberOf\w+\s*=\s*[\"']\s*([-+]?\d+)")
 _COUNTS = re.compile(
-    rb"[\r\n][ \t]*(?=[^\s\d.+-])(?i:(?:POINTS|CELLS|CELL_TYPES|POLYGONS|TRIANGLE_STRIPS|LINES"
-    rb"|VERTICES|POINT_DATA|CELL_DATA|(?:FIELD|COLOR_SCALARS|LOOKUP_TABLE|TEXTURE_COORDINATES"
-    rb"|SCALARS\s+\S+)\s+\S+)\s+([-+]?\d+)|\S+[ \t]+(\d+)[ \t]+(\d+)[ \t]+[a-z]\w*[ \t]*[\r\n])"
+    rb"[\r\n][ \t]*(?=[^\s\d.+-])"
+    rb"(?i:SCALARS\s+\S+\s+\S+(?:\s+([-+]?\d+))?(?:\s+LOOKUP_TABLE\s+\S+)?"
+    rb"|(?:POINTS|CELLS|CELL_TYPES|POLYGONS|TRIANGLE_STRIPS|LINES|VERTICES|POINT_DATA|CELL_DATA"
+    rb"|(?:FIELD|COLOR_SCALARS|LOOKUP_TABLE|TEXTURE_COORDINATES)\s+\S+)\s+([-+]?\d+)"
+    rb"|\S+[ \t]+(\d+)[ \t]+(\d+)[ \t]+[a-z]\w*[ \t]*[\r\n])"
 )
 _TEXT = re.compile(rb'<Points>\s*<DataArray[^>]*format="ascii"')
 # Legacy text, after two lines of head and title; then its points, and arrays.
