@@ -1,14 +1,17 @@
 """What is written is what other programs open: faces, normals, colours.
 
 Each program reads the formats that it knows; those that are not installed are skipped by name:
-`pip install open3d assimp-py meshlib lib3mf networkx lxml` and, in a folder that NODE_PATH names,
-`npm install gltf-validator` add them.
+`pip install open3d assimp-py meshlib lib3mf networkx lxml bpy` and, in a folder that NODE_PATH
+names, `npm install gltf-validator three` add them.
 """
 
 from __future__ import annotations
 
+import importlib.util
+import json
 import shutil
 import subprocess
+import sys
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -112,21 +115,91 @@ def by_lib3mf(path: Path) -> Seen:
 
 def by_validator(path: Path) -> Seen:
     """The validator of the standard of glTF, which finds no fault; trimesh then reads the file."""
-    node = shutil.which("node")
     script = (
         "const check = require('gltf-validator').validateBytes;"
         "check(new Uint8Array(require('fs').readFileSync(process.argv[1]))).then((found) => {"
         "console.log(JSON.stringify(found.issues.messages));"
         "process.exit(found.issues.numErrors + found.issues.numWarnings);})"
     )
+    by_node("gltf-validator", script, path)
+    return by_trimesh(path)
+
+
+def by_node(package: str, script: str, path: Path) -> bytes:
+    """What a script prints, unless there is no Node or not the package."""
+    node = shutil.which("node")
     if (
         node is None
-        or subprocess.run([node, "-e", "require('gltf-validator')"], check=False).returncode
+        or subprocess.run([node, "-e", f"require('{package}')"], check=False).returncode
     ):
-        pytest.skip("no gltf-validator")
+        pytest.skip(f"no {package}")
     done = subprocess.run([node, "-e", script, str(path)], capture_output=True, check=False)
-    assert done.returncode == 0, done.stdout
-    return by_trimesh(path)
+    assert done.returncode == 0, done.stdout + done.stderr
+    return done.stdout
+
+
+def by_three(path: Path) -> Seen:
+    """three.js, with the loader of the format; it takes no matrix of a node into account."""
+    script = """
+        const { readFileSync } = require('fs');
+        const { dirname, extname } = require('path');
+        const path = process.argv[1], ending = extname(path).slice(1).toUpperCase();
+        const name = `${{ GLB: 'GLTF' }[ending] ?? ending}Loader`;
+        const folder = `${dirname(require.resolve('three'))}/../examples/jsm/loaders`;
+        import(`${folder}/${name}.js`).then(async (loaders) => {
+          const bytes = readFileSync(path), loader = new loaders[name]();
+          const data = ending === 'OBJ' ? bytes.toString() : new Uint8Array(bytes).buffer;
+          const read = ending === 'GLB' ? await loader.parseAsync(data, '') : loader.parse(data);
+          let found = read;
+          (read.scene ?? read).traverse?.((one) => { if (one.isMesh) found = one.geometry; });
+          const { position, normal, color } = found.attributes;
+          const arrays = [position, found.index, normal, color];
+          const numbers = (one) => Array.from(one.array, (_, k) =>
+            one.getComponent(Math.floor(k / one.itemSize), k % one.itemSize));
+          console.log(JSON.stringify(arrays.map((one) => one && numbers(one))));
+        });"""
+    arrays = [one and np.array(one) for one in json.loads(by_node("three", script, path))]
+    vertices, faces, normals, colours = arrays
+    vertices = vertices.reshape(-1, 3)
+    faces = np.arange(len(vertices)) if faces is None else faces
+    return Seen(
+        vertices,
+        faces.reshape(-1, 3),
+        None if normals is None or path.suffix == ".stl" else normals.reshape(-1, 3),
+        None if colours is None else colours.reshape(len(vertices), -1)[:, :3],
+    )
+
+
+def by_blender(path: Path) -> Seen:
+    """Blender, in a process of its own: it and pymeshlab bring libraries of one name."""
+    script = """
+import json, sys, bpy
+path, ending = sys.argv[1:]
+bpy.ops.wm.read_factory_settings(use_empty=True)
+if ending == "glb":
+    bpy.ops.import_scene.gltf(filepath=path)
+else:
+    read = getattr(bpy.ops.wm, ending + "_import")
+    read(filepath=path, forward_axis="Y", up_axis="Z")
+(mesh,) = bpy.data.meshes
+colours = mesh.color_attributes[0].data if mesh.color_attributes else []
+found = [[one.co for one in mesh.vertices], [one.vertices for one in mesh.polygons]]
+found += [[one.vector for one in mesh.vertex_normals], [one.color for one in colours]]
+print("\\n" + json.dumps([[list(row) for row in one] for one in found]))
+"""
+    if importlib.util.find_spec("bpy") is None:
+        pytest.skip("no bpy")
+    words = [sys.executable, "-c", script, str(path), path.suffix[1:]]
+    done = subprocess.run(words, capture_output=True, check=False)
+    assert done.returncode == 0, done.stderr
+    arrays = [np.array(one) for one in json.loads(done.stdout.splitlines()[-1])]
+    vertices, faces, normals, colours = arrays
+    if path.suffix == ".glb":  # of which y is up
+        vertices, normals = (one[:, [0, 2, 1]] * [1, 1, -1] for one in (vertices, normals))
+    if len(colours) == faces.size:  # of corners
+        _, first = np.unique(faces, return_index=True)
+        colours = colours[first]
+    return Seen(vertices, faces, normals, colours[:, :3] if len(colours) else None)
 
 
 def by_meshlab(path: Path) -> Seen:
@@ -146,6 +219,8 @@ PROGRAMS: dict[Callable[[Path], Seen], str] = {
     by_meshlib: "obj off ply stl",
     by_lib3mf: "3mf",
     by_validator: "glb",
+    by_three: "glb obj ply stl",
+    by_blender: "glb obj ply stl",
     by_meshlab: "3ds 3mf ctm dae obj off ply stl wrl x3d",
 }
 # Formats whose colours the program reads, too.
@@ -154,6 +229,8 @@ COLOURED = {
     by_validator: "glb",
     by_vtk: "obj ply vtk vtp",
     by_open3d: "glb obj off ply",
+    by_three: "glb obj ply",
+    by_blender: "glb obj ply",
     by_meshlab: "dae obj off ply wrl x3d",
 }
 # Formats that are written only where the input has them, and another program that writes it.
