@@ -84,10 +84,14 @@ Eigen::MatrixXi gridOf(const Vertices& points, const std::vector<Index>& rows) {
     return {};
 }
 
-Index powerOfTwo(Index least) {
-    Index size = 1;
-    while (size < least) size *= 2;
-    return size;
+/// The next product of 2, 3 and 5, whose transforms are fast.
+Index fastSize(Index least) {
+    for (Index size = least;; ++size) {
+        Index rest = size;
+        for (const Index factor : {2, 3, 5})
+            while (rest % factor == 0) rest /= factor;
+        if (rest == 1) return size;
+    }
 }
 
 /// Transforms columns, then rows.
@@ -112,15 +116,20 @@ Spectrum transformed(const Spectrum& values, bool isInverse) {
 /// first axis, columns -b to b of the second.
 Grid autocorrelation(const Grid& heights, const Grid& isThere) {
     const Index a = heights.rows() / 2, b = heights.cols() / 2;
-    const Index rows = powerOfTwo(heights.rows() + a + 1);
-    const Index cols = powerOfTwo(heights.cols() + b + 1);
-    Spectrum values = Spectrum::Zero(rows, cols);
-    values.topLeftCorner(heights.rows(), heights.cols()) = heights;
-    Spectrum weights = Spectrum::Zero(rows, cols);
-    weights.topLeftCorner(heights.rows(), heights.cols()) = isThere;
-    values = transformed(values, false).cwiseAbs2();
-    // Both sums are real: one is transformed as the imaginary part.
-    values += std::complex<double>(0.0, 1.0) * transformed(weights, false).cwiseAbs2();
+    const Index rows = fastSize(heights.rows() + a + 1);
+    const Index cols = fastSize(heights.cols() + b + 1);
+    // Both are real: one is transformed as the imaginary part of the other, there and back.
+    const std::complex<double> i1(0.0, 1.0);
+    Spectrum both = Spectrum::Zero(rows, cols);
+    both.topLeftCorner(heights.rows(), heights.cols()) = heights + i1 * isThere;
+    both = transformed(both, false);
+    Spectrum values(rows, cols);
+    for (Index j = 0; j < cols; ++j)
+        for (Index i = 0; i < rows; ++i) {
+            const auto one = both(i, j),
+                       mirrored = std::conj(both((rows - i) % rows, (cols - j) % cols));
+            values(i, j) = 0.25 * (std::norm(one + mirrored) + i1 * std::norm(one - mirrored));
+        }
     values = transformed(values, true);
     Grid means(2 * a + 1, 2 * b + 1);
     for (Index i = -a; i <= a; ++i)

@@ -114,8 +114,10 @@ double squaredSlope(const Eigen::RowVector3d& a, const Eigen::RowVector3d& b, do
     return (bb * da * da - 2.0 * ab * da * db + aa * db * db) / determinant;
 }
 
-void measureSlopes(const Eigen::VectorXd& h, const Vertices& reference, const Faces& F,
-                   const std::vector<bool>& counts, TextureParameters& texture) {
+}  // namespace
+
+TextureSlopes slopesOf(const Eigen::VectorXd& h, const Vertices& reference, const Faces& F,
+                       const std::vector<bool>& counts) {
     double total = 0.0, slopes = 0.0, added = 0.0;
     for (Index t = 0; t < F.rows(); ++t) {
         const int i = F(t, 0), j = F(t, 1), k = F(t, 2);
@@ -129,12 +131,9 @@ void measureSlopes(const Eigen::VectorXd& h, const Vertices& reference, const Fa
         slopes += area * squared;
         added += area * squared / (std::sqrt(1.0 + squared) + 1.0);  // sqrt(1 + s) - 1
     }
-    if (total == 0.0) return;
-    texture.Sdq = std::sqrt(slopes / total);
-    texture.Sdr = added / total;
+    if (total == 0.0) return {};
+    return {std::sqrt(slopes / total), added / total};
 }
-
-}  // namespace
 
 TextureParameters textureParameters(const Eigen::VectorXd& h, const Vertices& reference,
                                     const Faces& F, const std::vector<bool>& counts) {
@@ -144,7 +143,7 @@ TextureParameters textureParameters(const Eigen::VectorXd& h, const Vertices& re
     const std::vector<Index> order = descending(h, counts);
     measureDistribution(h, areas, order, texture);
     measureCore(h, areas, order, texture);
-    measureSlopes(h, reference, F, counts, texture);
+    static_cast<TextureSlopes&>(texture) = slopesOf(h, reference, F, counts);
     return texture;
 }
 

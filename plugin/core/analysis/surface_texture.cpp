@@ -5,20 +5,18 @@
 #include <optional>
 #include <utility>
 
-#include "core/analysis/coarse_surface.h"
 #include "core/analysis/evaluated_part.h"
 #include "core/analysis/form_part.h"
-#include "core/filter/full_spectrum_evaluator.h"
+#include "core/analysis/texture_filters.h"
 #include "core/laplacian/vertex_weight.h"
 #include "core/mesh/creases.h"
+#include "core/mesh/measures.h"
 #include "core/mesh/mesh_check.h"
 #include "core/mesh/normals.h"
 #include "core/noise/stretched_axis.h"
 #include "core/support/errors.h"
-#include "core/support/frequency.h"
 #include "core/support/threads.h"
 #include "core/support/types.h"
-#include "core/transfer/transfer_function.h"
 
 namespace spectral {
 
@@ -56,125 +54,6 @@ void checkOptions(const TextureOptions& options) {
     checkWeights({options.selected, {}});
 }
 
-/// By how much a mesh lowers the frequencies of waves, c in omega^2 / (1 + c omega^2): as vertices
-/// i are joined to j by weights w, in the mean over all directions, c_i = sum_j w |x_i - x_j|^4 /
-/// (64 D_i), the next term of the series in which sum_j w |x_i - x_j|^2 / (4 D_i) = 1. Half of all
-/// vertices have a larger one: faces without relief may be meshed as coarsely as you like.
-double dispersionOf(const Laplacian& laplacian, const Vertices& X) {
-    std::vector<double> all;
-    for (Index i = 0; i < X.rows(); ++i) {
-        double sum = 0.0;
-        for (SparseMatrix::InnerIterator entry(laplacian.W, i); entry; ++entry)
-            sum -= entry.value() * std::pow((X.row(i) - X.row(entry.index())).squaredNorm(), 2);
-        all.push_back(sum / (64.0 * laplacian.D[i]));
-    }
-    const auto middle = all.begin() + static_cast<std::ptrdiff_t>(all.size() / 2);
-    std::nth_element(all.begin(), middle, all.end());
-    return std::max(0.0, *middle);
-}
-
-/// The low-pass of ISO 16610-61 with a nesting index, exp(-pi (alpha size / wavelength)^2) with
-/// alpha = sqrt(ln 2 / pi): 2^-(size / wavelength)^2. Ours is 2^(-w^2 / 2), w = feature size /
-/// wavelength, and so the same for a feature size of sqrt(2) nesting indices.
-TransferFunction standardGaussian(double size, double dispersion) {
-    TransferFunctionOptions gaussian;
-    gaussian.dispersion = dispersion;
-    return {gaussian, cutoffFrequency(std::sqrt(2.0) * size)};
-}
-
-/// Low-passes of a signal at nesting indices, the largest first: fractional powers of one Gaussian.
-Evaluation lowPasses(const Laplacian& laplacian, const Eigen::MatrixXd& X,
-                     const std::vector<double>& sizes, double dispersion, double accuracy,
-                     const Progress& progress) {
-    std::vector<double> powers;
-    for (const double size : sizes) powers.push_back(std::pow(size / sizes[0], 2));
-    const TransferFunction F = standardGaussian(sizes[0], dispersion);
-    return FullSpectrumEvaluator(F, accuracy, false, Solver::Cheapest)
-        .evaluate(laplacian, X, powers, accuracy, progress);
-}
-
-/// The low-pass of signals at a form size: on cells a sixteenth of it in size, as form varies so
-/// slowly, and then over the steps between them.
-/// @param smooth  n x 3, the surface without roughness.
-/// @param X       n x c signals.
-Eigen::MatrixXd slowParts(const MeshLaplacian& mesh, const Vertices& smooth,
-                          const Eigen::MatrixXd& X, double size, const Progress& progress) {
-    constexpr double kCells = 16.0, kStep = 2.0;  // cells in a size, and in what smooths steps
-    constexpr Index kFewer = 4;                   // cells are worth it if there are so many fewer
-    constexpr double kAccuracy = 1e-4;            // of what is a correction
-    const Laplacian& laplacian = mesh.laplacian;
-    const double step = kStep * size / kCells;
-    const CoarseSurface coarse = coarsened(mesh, smooth, size / kCells);
-    if (kFewer * coarse.laplacian.D.size() > laplacian.D.size())
-        return lowPasses(laplacian, X, {size}, 0.0, kAccuracy, progress).Y[0];
-    const auto columns = [](const Eigen::MatrixXd& in, Index rows, const auto& map) {
-        Eigen::MatrixXd out(rows, in.cols());
-        for (Index c = 0; c < in.cols(); ++c) out.col(c) = map(Eigen::VectorXd(in.col(c)));
-        return out;
-    };
-    const Eigen::MatrixXd means =
-        columns(X, coarse.laplacian.D.size(),
-                [&](const Eigen::VectorXd& x) { return coarse.meansOf(x, laplacian.D); });
-    const Evaluation form = lowPasses(
-        coarse.laplacian, means, {std::sqrt(size * size - step * step)}, 0.0, kAccuracy, progress);
-    const Eigen::MatrixXd steps = columns(
-        form.Y[0], X.rows(), [&](const Eigen::VectorXd& x) { return coarse.constantIn(x); });
-    return lowPasses(laplacian, steps, {step}, 0.0, kAccuracy, progress).Y[0];
-}
-
-/// The low-pass of heights at a form size, a mean over those that are far from ends: heights at
-/// creases are far larger, and would draw the form of the flanks with them.
-Eigen::VectorXd formOf(const Eigen::VectorXd& h, const std::vector<bool>& isFar,
-                       const MeshLaplacian& mesh, const Vertices& smooth, double size,
-                       const Progress& progress) {
-    constexpr double kLeast = 0.01;  // weight that still has a mean; the low-pass is 1e-4 off
-    if (std::count(isFar.begin(), isFar.end(), false) == 0)
-        return slowParts(mesh, smooth, h, size, progress).col(0);
-    Eigen::MatrixXd weighted(h.size(), 2);
-    for (Index i = 0; i < h.size(); ++i)
-        weighted.row(i) << (isFar[i] ? h[i] : 0.0), (isFar[i] ? 1.0 : 0.0);
-    // Columns of one size: the accuracy is that of all of them together.
-    const double scale = weighted.col(0).norm() / weighted.col(1).norm();
-    if (scale == 0.0) return Eigen::VectorXd::Zero(h.size());
-    weighted.col(1) *= scale;
-    const Eigen::MatrixXd slow = slowParts(mesh, smooth, weighted, size, progress);
-    return slow.col(0).cwiseQuotient((slow.col(1) / scale).cwiseMax(kLeast));
-}
-
-/// Of a cutoff, squared; any other share would do.
-constexpr double kBend = 0.5;
-
-/// What is left of a signal by the S- and L-filters, its reference, and how accurately.
-struct Separated {
-    Eigen::MatrixXd waviness;  ///< The signal without noise and roughness; 0 without an L-filter.
-    Eigen::MatrixXd roughness;
-    Eigen::MatrixXd bend;  ///< What a low-pass at kBend of the cutoff leaves, but not the waviness.
-    double errorEstimate = 0.0;  ///< Root mean square, units of the signal.
-    bool accuracyReached = true;
-};
-
-Separated separated(const MeshLaplacian& mesh, const Eigen::MatrixXd& X,
-                    const TextureOptions& options, const Progress& progress) {
-    const Laplacian& laplacian = mesh.laplacian;
-    std::vector<double> sizes;
-    if (options.waviness > 0.0) sizes = {options.waviness, std::sqrt(kBend) * options.waviness};
-    if (options.noise > 0.0) sizes.push_back(options.noise);
-    const Eigen::MatrixXd none = Eigen::MatrixXd::Zero(X.rows(), X.cols());
-    if (sizes.empty()) return {none, X, none};
-    const Evaluation done = lowPasses(laplacian, X, sizes, dispersionOf(laplacian, mesh.surface.X),
-                                      kTextureAccuracy, progress);
-    const double size =
-        std::sqrt((laplacian.D.asDiagonal() * X.cwiseAbs2()).sum() / laplacian.D.sum());
-    Separated parts{none, options.noise > 0.0 ? done.Y.back() : X, none, done.errorEstimate * size,
-                    done.accuracyReached};
-    if (options.waviness > 0.0) {
-        parts.waviness = done.Y[0];
-        parts.roughness -= done.Y[0];
-        parts.bend = done.Y[1] - done.Y[0];
-    }
-    return parts;
-}
-
 /// Unit normals; 0 where the surface has shrunk to a point.
 Vertices unitNormals(const Vertices& X, const Faces& F) {
     Vertices N = angleWeightedNormals<double>(X, F).vertices;
@@ -182,23 +61,31 @@ Vertices unitNormals(const Vertices& X, const Faces& F) {
     return N.array().isFinite().select(N, 0.0);
 }
 
-/// Edges between planes of different directions, at which the low-passed surface turns as far: of
-/// roughness, only the first is true. A crease of the angle a is drawn in by sin(a / 2) times the
-/// mean distance from it under the Gaussian, (2 / pi)^(1/2) sigma = .1495 cutoffs. Triangles longer
-/// than half a cutoff are no roughness, and too coarse for the low-pass.
-/// @param bend  n, of the low-pass (Separated), along its normals: a boundary is drawn across them.
-std::vector<EdgeVertices> creasesOf(const Surface& surface, const Eigen::VectorXd& bend,
-                                    double cutoff, double angle) {
+/// Vertices of triangles that are longer than half a cutoff: no roughness, and too coarse for the
+/// low-pass.
+std::vector<bool> coarseVertices(const Vertices& X, const Faces& F, double cutoff) {
     constexpr double kCoarse = 0.5;
-    if (angle >= 180.0) return {};
-    std::vector<EdgeVertices> edges = creaseEdges(surface.X, surface.F, angle);
-    std::vector<bool> isCoarse(surface.vertex.size(), false);
-    for (Index t = 0; t < surface.F.rows(); ++t)
+    std::vector<bool> isCoarse(static_cast<std::size_t>(X.rows()), false);
+    for (Index t = 0; t < F.rows(); ++t)
         for (int k = 0; k < 3; ++k) {
-            const int i = surface.F(t, k), j = surface.F(t, (k + 1) % 3);
-            if ((surface.X.row(i) - surface.X.row(j)).norm() > kCoarse * cutoff)
+            const int i = F(t, k), j = F(t, (k + 1) % 3);
+            if ((X.row(i) - X.row(j)).squaredNorm() > std::pow(kCoarse * cutoff, 2))
                 isCoarse[i] = isCoarse[j] = true;
         }
+    return isCoarse;
+}
+
+/// Edges between planes of different directions, at which the low-passed surface turns as far: of
+/// roughness, only the first is true. A crease of the angle a is drawn in by sin(a / 2) times the
+/// mean distance from it under the Gaussian, (2 / pi)^(1/2) sigma = .1495 cutoffs. Coarse triangles
+/// have all creases.
+/// @param bend  n, of the low-pass (SeparatedSignal), along its normals: a boundary is drawn across
+///              them.
+std::vector<EdgeVertices> creasesOf(const Vertices& X, const Faces& F, const Eigen::VectorXd& bend,
+                                    double cutoff, double angle) {
+    if (angle >= 180.0) return {};
+    std::vector<EdgeVertices> edges = creaseEdges(X, F, angle);
+    const std::vector<bool> isCoarse = coarseVertices(X, F, cutoff);
     const double sigma = std::sqrt(std::log(2.0) / 2.0) / kPi * cutoff;
     const double least = std::sin(0.5 * angle * kPi / 180.0) * std::sqrt(2.0 / kPi) * sigma *
                          (1.0 - std::sqrt(kBend));
@@ -306,7 +193,10 @@ Heights heightsAboveShape(ShapeKind kind, Surface whole, const TextureOptions& o
     heights.evaluated = both(heights.selected, isInside);
     std::fill(heights.evaluated.begin() + n, heights.evaluated.end(), false);
     checkEvaluated(heights, cutoff);
-    const Separated parts = separated(mesh, d, options, progress);
+    SeparatedSignal parts{Eigen::VectorXd::Zero(d.size()), d, {}};
+    if (cutoff > 0.0)
+        parts =
+            TextureFilters(mesh, cutoff).separated(d, options.waviness, options.noise, progress);
     heights.h = parts.roughness.col(0);
     heights.thin.resize(isInside.size());
     heights.reference = mesh.surface.X + parts.waviness.col(0).asDiagonal() * N;
@@ -319,11 +209,44 @@ Heights heightsAboveShape(ShapeKind kind, Surface whole, const TextureOptions& o
     return heights;
 }
 
-/// Whether the vertices that count keep their areas, to 1 %, without roughness: that of the slope s
-/// takes s^2 / 2 of them, and makes waves longer by as much, which at the cutoff is 1.4 times as
-/// much in height. On the whole, and where heights are: a few particles may be all there is.
+/// The surface with most of its roughness taken off along its normals, so that no edge is
+/// shortened; only lengths are measured on it. Vertices move half of the way to the mean of their
+/// neighbours, as often as takes off what is shorter than a cutoff, more or less. A surface without
+/// steep roughness stays as it is, for this also draws in what is curved.
+Vertices smoothed(const Surface& surface, double cutoff) {
+    constexpr double kSteps = 0.1;  // for a cutoff of an edge; they grow with its square
+    constexpr double kMost = 30.0;
+    constexpr double kFlat = 0.0025;  // additional area that changes no height by half a percent
+    const Faces& F = surface.F;
+    Eigen::VectorXd corners = Eigen::VectorXd::Zero(surface.X.rows());
+    for (const int i : F.reshaped()) corners[i] += 1.0;
+    const std::vector<bool> isCoarse = coarseVertices(surface.X, F, cutoff);
+    const double steps =
+        std::min(kMost, kSteps * std::pow(cutoff / meanEdgeLength(surface.X, F), 2));
+    Vertices X = surface.X;
+    for (int step = 0; step < steps; ++step) {
+        Vertices sums = Vertices::Zero(X.rows(), 3);
+        for (Index t = 0; t < F.rows(); ++t) {
+            const auto corner = F.row(t);
+            const Eigen::RowVector3d sum = X.row(corner[0]) + X.row(corner[1]) + X.row(corner[2]);
+            for (const int i : corner) sums.row(i) += sum;
+        }
+        for (Index i = 0; i < X.rows(); ++i)  // sums have the vertex itself once for each corner
+            if (!isCoarse[i]) X.row(i) = 0.25 * (X.row(i) + sums.row(i) / corners[i]);
+    }
+    const Vertices N = unitNormals(X, F);
+    const Eigen::VectorXd d = (surface.X - X).cwiseProduct(N).rowwise().sum();
+    const std::vector<bool> all(static_cast<std::size_t>(d.size()), true);
+    if (slopesOf(d, X, F, all).Sdr < kFlat) return surface.X;
+    return surface.X - d.asDiagonal() * N;
+}
+
+/// Whether the vertices that count have the areas, to 1 %, that they have without roughness: that
+/// of the slope s takes s^2 / 2 of them, and makes waves longer by as much, which at the cutoff is
+/// 1.4 times as much in height. On the whole, and where heights are: a few particles may be all
+/// there is.
 bool isSmooth(const Heights& heights, const Vertices& smooth) {
-    constexpr double kLeast = 0.99;
+    constexpr double kMost = 0.01;
     const Eigen::VectorXd& before = heights.mesh.laplacian.D;
     const Eigen::VectorXd after = lumpedMass(smooth, heights.mesh.surface.F);
     Eigen::Array2d all = Eigen::Array2d::Zero(), left = Eigen::Array2d::Zero();
@@ -333,26 +256,28 @@ bool isSmooth(const Heights& heights, const Vertices& smooth) {
         all += before[i] * weights;
         left += after[i] * weights;
     }
-    return (left >= kLeast * all).all();
+    return ((left - all).abs() <= kMost * all).all();
 }
 
 Heights heightsAboveLowPass(Surface surface, const TextureOptions& options,
                             const Progress& progress) {
-    constexpr int kPasses = 4;  // two, but for slopes above 1
+    constexpr int kPasses = 4;  // one or two, but for slopes above 1
     const double cutoff = options.waviness;
     const Index n = surface.X.rows(), m = surface.F.rows();
     const Outline outline = outlineOf(surface, kHolePerCutoff * cutoff);
     // A low-pass of coordinates would draw the rim of a hole away from it, to twice its width.
     surface = bridged(std::move(surface), outline);
-    const Vertices X = surface.X;
+    Vertices X = surface.X;
+    surface.X = smoothed(surface, cutoff);
     Heights heights{meshLaplacian(std::move(surface), options.laplacian)};
     MeshLaplacian& mesh = heights.mesh;
-    const Eigen::VectorXd areas = mesh.laplacian.D;
     const std::vector<bool> inside = farFrom(outline.ends, mesh.surface, mesh.laplacian.W, cutoff);
     std::vector<bool> smooth, isFar;
     for (int pass = 0; pass < kPasses; ++pass) {
+        TextureFilters filters(mesh, cutoff);
         const double begin = pass == 0 ? 0.0 : 0.7;
-        const Separated parts = separated(mesh, X, options, progress.part(begin, 0.9));
+        const SeparatedSignal parts =
+            filters.separated(X, cutoff, options.noise, progress.part(begin, 0.9));
         heights.reference = parts.waviness;
         heights.errorEstimate = parts.errorEstimate;
         heights.accuracyReached = parts.accuracyReached;
@@ -361,9 +286,9 @@ Heights heightsAboveLowPass(Surface surface, const TextureOptions& options,
             return moved.cwiseProduct(N).rowwise().sum();
         };
         if (pass == 0) {
-            smooth =
-                farFrom(creasesOf(mesh.surface, along(parts.bend), cutoff, options.creaseAngle),
-                        mesh.surface, mesh.laplacian.W, cutoff);
+            smooth = farFrom(
+                creasesOf(X, mesh.surface.F, along(parts.bend), cutoff, options.creaseAngle),
+                mesh.surface, mesh.laplacian.W, cutoff);
             isFar = both(inside, smooth);
             heights.selected = selectedOf(mesh.surface, options);
             heights.evaluated = both(heights.selected, isFar);
@@ -372,16 +297,16 @@ Heights heightsAboveLowPass(Surface surface, const TextureOptions& options,
         }
         heights.h = along(parts.roughness);
         if (options.form == FormKind::Size)
-            heights.h -= formOf(heights.h, isFar, mesh, heights.reference, formSizeOf(options),
-                                progress.part(0.9, 1.0));
+            heights.h -= filters.formOf(heights.h, isFar, heights.reference, formSizeOf(options),
+                                        progress.part(0.9, 1.0));
         // Wavelengths are those on the smooth shape.
-        const Vertices projection = X - heights.h.asDiagonal() * N;
+        Vertices projection = X - heights.h.asDiagonal() * N;
         if (pass + 1 == kPasses || isSmooth(heights, projection)) break;
         surface = std::move(mesh.surface);
-        surface.X = projection;
+        surface.X = std::move(projection);
         mesh = meshLaplacian(std::move(surface), options.laplacian);
     }
-    heights.thin = thinParts(areas, heights.reference, mesh.surface.F);
+    heights.thin = thinParts(lumpedMass(X, mesh.surface.F), heights.reference, mesh.surface.F);
     heights.leftOutSq = leftOutSq(heights, inside, smooth);
     keepFirst(n, m, heights);
     return heights;

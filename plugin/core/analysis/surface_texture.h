@@ -4,6 +4,7 @@
 
 #include "core/analysis/autocorrelation.h"
 #include "core/analysis/height_statistics.h"
+#include "core/analysis/texture_filters.h"
 #include "core/laplacian/laplacian_builder.h"
 #include "core/support/progress.h"
 
@@ -37,9 +38,6 @@ struct TextureOptions {
 /// At this form size the F-operator takes 6 % from waves of four cutoffs, of which the L-filter
 /// leaves 4 %: the texture is still that of the L-filter, to .003.
 constexpr double kFormPerWaviness = 8.0;
-
-/// Relative to the size of what is filtered: of a shape, roughness is a thousandth.
-constexpr double kTextureAccuracy = 1e-6;
 
 /// The largest hole that is points missing, relative to the cutoff: the filters see the mean of its
 /// rim there, and peaks next to it are .6 % off at a width of .21 cutoffs, 5 % at .35. At a larger

@@ -57,17 +57,26 @@ double FullSpectrumEvaluator::poleFor(const Laplacian& laplacian, double alpha) 
     return place->second;
 }
 
-Evaluation FullSpectrumEvaluator::evaluate(const Laplacian& laplacian, const Signals& X,
-                                           const std::vector<double>& alphas, double accuracy,
-                                           const Progress& progress) {
+FullSpectrumOptions FullSpectrumEvaluator::optionsFor(double accuracy) {
     FullSpectrumOptions options;
     options.accuracy = accuracy;
     options.atEveryVertex = atEveryVertex_;
     options.samples = F_.samples();
     options.spare = &spare_;
+    return options;
+}
+
+std::vector<Gain> FullSpectrumEvaluator::gainsFor(const std::vector<double>& alphas) const {
     std::vector<Gain> gains;
     for (const double alpha : alphas) gains.push_back(fractionalPower(F_, alpha));
+    return gains;
+}
 
+Evaluation FullSpectrumEvaluator::evaluate(const Laplacian& laplacian, const Signals& X,
+                                           const std::vector<double>& alphas, double accuracy,
+                                           const Progress& progress) {
+    const FullSpectrumOptions options = optionsFor(accuracy);
+    const std::vector<Gain> gains = gainsFor(alphas);
     if (auto evaluation = evaluateByProducts(laplacian, gains, X, options, progress))
         return *std::move(evaluation);
     const StopPoint stop = [&] { progress.report(0.0, "factorizing"); };
@@ -82,6 +91,20 @@ Evaluation FullSpectrumEvaluator::evaluate(const Laplacian& laplacian, const Sig
             return *std::move(evaluation);
         throw;
     }
+    return evaluateFactorized(laplacian, gains, X, options, progress);
+}
+
+Evaluation FullSpectrumEvaluator::evaluateAgain(const Laplacian& laplacian, const Signals& X,
+                                                const std::vector<double>& alphas, double accuracy,
+                                                const Progress& progress) {
+    if (ldlt_.factorizations() == 0) return evaluate(laplacian, X, alphas, accuracy, progress);
+    return evaluateFactorized(laplacian, gainsFor(alphas), X, optionsFor(accuracy), progress);
+}
+
+Evaluation FullSpectrumEvaluator::evaluateFactorized(const Laplacian& laplacian,
+                                                     const std::vector<Gain>& gains,
+                                                     const Signals& X, FullSpectrumOptions options,
+                                                     const Progress& progress) {
     // A series of products is as accurate for debris; Lanczos spaces do not see it.
     options.atEveryVertex = atEveryVertex_ || hasDebris(laplacian.constants);
     return evaluateInKrylovSpaces(laplacian, ldlt_, gains, X, std::move(options), progress);

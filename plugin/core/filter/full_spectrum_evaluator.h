@@ -46,7 +46,17 @@ class FullSpectrumEvaluator : public Evaluator {
                         const std::vector<double>& alphas, double accuracy,
                         const Progress& progress) override;
 
+    /// The same on the Laplacian of the last evaluation, whose factorization serves again.
+    Evaluation evaluateAgain(const Laplacian& laplacian, const Signals& X,
+                             const std::vector<double>& alphas, double accuracy,
+                             const Progress& progress);
+
   private:
+    FullSpectrumOptions optionsFor(double accuracy);
+    std::vector<Gain> gainsFor(const std::vector<double>& alphas) const;
+    Evaluation evaluateFactorized(const Laplacian& laplacian, const std::vector<Gain>& gains,
+                                  const Signals& X, FullSpectrumOptions options,
+                                  const Progress& progress);
     /// Evaluates by products; empty if a factorization is chosen or expected to be cheaper.
     std::optional<Evaluation> evaluateByProducts(const Laplacian& laplacian,
                                                  const std::vector<Gain>& gains, const Signals& X,
