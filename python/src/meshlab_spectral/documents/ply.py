@@ -61,6 +61,7 @@ _LONGEST_SIZE = 12  # characters of the size of a list, of at most 32 bits, and 
 _Rows = np.ndarray[Any, Any]
 _Table = dict[str, Any]  # the numbers of a property; for lists their sizes, and all items
 _Changes = dict[tuple[str, ...], tuple[Array, Array]]  # before and after
+_Columns = dict[tuple[str, ...], tuple[Indices | slice, Array]]  # in which rows, and what
 
 
 @dataclass(kw_only=True)
@@ -107,8 +108,10 @@ class PlyDocument(Document):
             file.write(self._patched(changes, self.places, is_wide)[start:].data)
         else:
             content, end = memoryview(self.content), self.begin + rows.nbytes
-            new = _with_columns(rows, changes, self.ply.byte_order if is_wide else None)
-            file.writelines([content[start : self.begin], new, content[end:]])
+            columns: _Columns = {a: (slice(None), new) for a, (_, new) in changes.items()}
+            moved = with_columns(rows, columns, self.ply.byte_order if is_wide else None)
+            bytes_ = moved.view(np.uint8).data
+            file.writelines([content[start : self.begin], bytes_, content[end:]])
 
     def _patched(
         self, changes: _Changes, places: dict[str, Indices], is_wide: bool
@@ -135,17 +138,17 @@ class PlyDocument(Document):
         return content
 
 
-def _with_columns(rows: _Rows, changes: _Changes, wide: str | None) -> memoryview:
+def with_columns(rows: _Rows, columns: _Columns, wide: str | None) -> _Rows:
     """Return binary rows with new numbers; `wide` is the byte order of doubles, if needed."""
     fields = [
         (name, f"{wide}f8" if wide and name in AXES else type_, *shape)
         for name, type_, *shape in rows.dtype.descr
     ]
     rows = rows.astype(fields)
-    for names, (_, after) in changes.items():
-        for name, column in zip(names, after.T, strict=True):
-            rows[name] = column
-    return rows.view(np.uint8).data
+    for names, (where, table) in columns.items():
+        for name, column in zip(names, table.T, strict=True):
+            rows[name][where] = column
+    return rows
 
 
 def widened(header: bytes) -> bytes:

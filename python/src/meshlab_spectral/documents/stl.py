@@ -6,6 +6,7 @@ import struct
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -32,13 +33,18 @@ class _BinaryStl(Document):
         (part,), (after,) = self.parts, moved
         content = bytearray(self.content)
         rows = np.frombuffer(content, TRIANGLE, self.count, HEADER)
-        changed = (after != part.vertices)[part.faces]
-        np.copyto(rows["corners"], after.astype("<f4")[part.faces], where=changed)
-        with np.errstate(invalid="ignore"):
-            normals = rows["normal"].astype(np.float64)
-        rows["normal"] = following_facet_normals(part.vertices, after, part.faces, normals)
+        move(rows, part.vertices, after, part.faces)
         target.write_bytes(content)
         return precision_warnings(part.vertices, after, target.name)
+
+
+def move(rows: np.ndarray[Any, Any], before: Array, after: Array, faces: Indices) -> None:
+    """Write corners that have moved into binary facets, and normals that follow."""
+    changed = (after != before)[faces]
+    np.copyto(rows["corners"], after.astype("<f4")[faces], where=changed)
+    with np.errstate(invalid="ignore"):
+        normals = rows["normal"].astype(np.float64)
+    rows["normal"] = following_facet_normals(before, after, faces, normals)
 
 
 @dataclass(kw_only=True)

@@ -10,7 +10,6 @@ from typing import IO, Any
 
 import numpy as np
 
-from meshlab_spectral._core import following_facet_normals
 from meshlab_spectral.documents import ply, stl
 from meshlab_spectral.documents.document import Array, Indices
 from meshlab_spectral.tiles.plan import Workspace
@@ -39,9 +38,11 @@ def gather(
             if mesh.is_joined_by_position:
                 rows = _facets(mesh.block[i:j], *moved.between(*span))
             else:
-                rows = _vertices(mesh.block[i:j], is_wide, {ply.AXES: moved.between(*span)})
+                columns: dict[tuple[str, ...], Any] = {ply.AXES: moved.between(*span)}
                 if mesh.normals:
-                    rows = _vertices(rows, False, {ply.NORMALS: normals.between(*span)})
+                    columns[ply.NORMALS] = normals.between(*span)
+                wide = mesh.block.dtype["x"].str[0] if is_wide else None
+                rows = ply.with_columns(mesh.block[i:j], columns, wide)
             file.write(rows.tobytes())
             mesh.forget()
         source.seek(mesh.begin + mesh.block.nbytes)
@@ -83,33 +84,13 @@ def _forget(rows: Any) -> None:
         owner.madvise(mmap.MADV_DONTNEED)
 
 
-def _vertices(
-    rows: Any, is_wide: bool, changes: dict[tuple[str, ...], tuple[Indices, Array]]
-) -> Any:
-    """Return rows with new numbers in some of them."""
-    fields = [
-        (name, f"{type_[0]}f8" if is_wide and name in ply.AXES else type_, *shape)
-        for name, type_, *shape in rows.dtype.descr
-    ]
-    rows = rows.astype(fields)
-    for names, (where, table) in changes.items():
-        for name, column in zip(names, table.T, strict=True):
-            rows[name][where] = column
-    return rows
-
-
 def _facets(rows: Any, where: Indices, moved: Array) -> Any:
     """Return facets with corners that have moved, and normals that follow."""
     before = rows["corners"].reshape(-1, 3).astype(np.float64)
     after = before.copy()
     after[where] = moved
-    F = np.arange(len(before)).reshape(-1, 3)
     rows = np.array(rows, stl.TRIANGLE)
-    changed = (after != before).reshape(-1, 3, 3)
-    np.copyto(rows["corners"], after.astype("<f4").reshape(-1, 3, 3), where=changed)
-    with np.errstate(invalid="ignore"):
-        given = rows["normal"].astype(np.float64)
-    rows["normal"] = following_facet_normals(before, after, F, given)
+    stl.move(rows, before, after, np.arange(len(before)).reshape(-1, 3))
     return rows
 
 
