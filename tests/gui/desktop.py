@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import re
 import subprocess
 import time
@@ -13,7 +14,8 @@ from numpy.typing import NDArray
 from PIL import Image
 from waiting import wait_for
 
-_DISPLAY = 7
+# One screen for each process of the tests.
+_DISPLAY = 7 + int(os.environ.get("PYTEST_XDIST_WORKER", "gw0").removeprefix("gw"))
 _SCREEN = "1600x1000x24"
 _ENVIRONMENT = {
     "PATH": "/usr/sbin:/usr/bin:/sbin:/bin",
@@ -43,9 +45,9 @@ class Desktop:
         self.root = root
         self._programs: list[subprocess.Popen[bytes]] = []
         try:
-            screen = self.start(
-                *("Xvfb", f":{_DISPLAY}", "-screen", "0", _SCREEN, "-nocursor", "-fbdir", "/tmp")
-            )
+            self._memory.mkdir()
+            options = ("-screen", "0", _SCREEN, "-nocursor", "-fbdir", self.inside(self._memory))
+            screen = self.start("Xvfb", f":{_DISPLAY}", *options)
             self.wait_for_socket(screen, self.scratch / f".X11-unix/X{_DISPLAY}")
             self.start("openbox")
         except BaseException:
@@ -56,6 +58,11 @@ class Desktop:
     def scratch(self) -> Path:
         """The folder /tmp of the Debian system."""
         return self.root / "tmp"
+
+    @property
+    def _memory(self) -> Path:
+        """The folder of the file that is the screen's memory."""
+        return self.scratch / f"screen{_DISPLAY}"
 
     def inside(self, path: Path) -> str:
         """Return the path of a file as programs inside the Debian system see it."""
@@ -116,7 +123,7 @@ class Desktop:
     def picture(self, box: Box | None = None) -> Picture:
         """Take a picture of the screen, or of a part of it: rows x columns x RGB."""
         # An XWD file that is the screen's memory: reading it takes no time from MeshLab.
-        dump = np.fromfile(self.scratch / "Xvfb_screen0", np.uint8)
+        dump = np.fromfile(self._memory / "Xvfb_screen0", np.uint8)
         header = dump[:100].view(">u4")
         width, height, row_bytes, colors = (int(header[i]) for i in (4, 5, 12, 19))
         pixels = dump[int(header[0]) + 12 * colors :][: height * row_bytes]

@@ -46,4 +46,4 @@ in_namespaces --net --ipc bash -euo pipefail -c '
     mount -t tmpfs -o mode=1777 tmpfs "$at/dev/shm"
     mount -t tmpfs -o mode=1777 tmpfs "$at/tmp"
     .venv/bin/python -m pytest -c python/pyproject.toml --rootdir . -p no:cacheprovider \
-        "${@:-tests/gui}"' "$root" "$@"
+        --numprocesses "$(nproc)" --dist worksteal "${@:-tests/gui}"' "$root" "$@"
