@@ -181,9 +181,9 @@ lint: setup  ## check style and types, change nothing
 	$(BIN)/ruff check --config python/pyproject.toml $(PYTHON_FILES)
 	$(BIN)/ruff format --check --config python/pyproject.toml $(PYTHON_FILES)
 	cd python/src && "$(CURDIR)/$(BIN)/lint-imports" ../pyproject.toml --no-cache
-	for platform in linux win32 darwin; do \
-	  $(BIN)/mypy --strict --platform $$platform --config-file python/pyproject.toml python/src \
-	    tests/python/filters/test_types.py || exit; done
+	printf '%s\n' linux win32 darwin | xargs -P "$$(nproc)" -I {} $(BIN)/mypy --strict --platform {} \
+	  --cache-dir .mypy_cache/{} --config-file python/pyproject.toml python/src \
+	  tests/python/filters/test_types.py
 
 options: $(PACKAGE)  ## write the tables of options of the Python package as the core has them
 	$(BIN)/python python/write_options.py
