@@ -20,8 +20,8 @@ except ImportError as error:
     print("skipped:", error)
     sys.exit(77)
 
-VERTICES = 1500
-"""Size of the meshes: a dense eigenproblem of this size takes seconds."""
+VERTICES = 1000
+"""Size of the meshes: a dense eigenproblem of this size takes a second."""
 
 Vertices = Any
 Faces = Any
