@@ -2,9 +2,14 @@
 
 from __future__ import annotations
 
+import atexit
+import io
+import json
 import os
 import pty
 import re
+import select
+import signal
 import subprocess
 import sys
 from pathlib import Path
@@ -13,15 +18,84 @@ from typing import Any
 import pymeshlab
 
 COMMAND = [sys.executable, "-m", "meshlab_spectral.cli"]
+_WIDE = {"COLUMNS": "200"}
 PRECIOUS = b"precious bytes of a file that was here before\n"
 
 
+class Worker:
+    """Runs commands in forks of one process that has imported the package: see command_worker.py.
+
+    A process of its own takes half a second to do so, which is most of what a command takes.
+    """
+
+    def __init__(self) -> None:
+        self._settings = _python_settings()
+        self._process = subprocess.Popen(
+            [sys.executable, str(Path(__file__).with_name("command_worker.py"))],
+            env={**os.environ, **_WIDE},
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            text=True,
+            start_new_session=True,
+        )
+
+    def suits(self) -> bool:
+        """Whether Python would start now as it did in the worker."""
+        return self._process.poll() is None and self._settings == _python_settings()
+
+    def run(
+        self, words: list[str], folder: Path, timeout: float
+    ) -> subprocess.CompletedProcess[str]:
+        """Run a command with the environment of now."""
+        environment = {**os.environ, **_WIDE}
+        request = {"words": words, "environment": environment, "folder": str(folder)}
+        assert self._process.stdin is not None
+        assert self._process.stdout is not None
+        self._process.stdin.write(json.dumps(request) + "\n")
+        self._process.stdin.flush()
+        if not select.select([self._process.stdout], [], [], timeout)[0]:
+            os.killpg(self._process.pid, signal.SIGKILL)
+            raise subprocess.TimeoutExpired(words, timeout)
+        code, *texts = json.loads(self._process.stdout.readline())
+        output, errors = (
+            io.TextIOWrapper(io.BytesIO(text.encode("utf-8", "surrogateescape"))).read()
+            for text in texts
+        )
+        return subprocess.CompletedProcess(words, code, output, errors)
+
+    def end(self) -> None:
+        """Let the worker end."""
+        self._process.communicate()
+
+
+def _python_settings() -> dict[str, str]:
+    return {name: value for name, value in os.environ.items() if name.startswith("PYTHON")}
+
+
+_workers: list[Worker] = []
+
+
+def worker() -> Worker | None:
+    """Return the worker of these tests; None where a command needs a process of its own."""
+    if not hasattr(os, "fork"):
+        return None
+    if not _workers:
+        _workers.append(Worker())
+        atexit.register(_workers[0].end)
+    return _workers[0] if _workers[0].suits() else None
+
+
 def command(
-    *arguments: object, timeout: float = 120, **environment: str
+    *arguments: object, timeout: float = 120, folder: Path | None = None, **environment: str
 ) -> subprocess.CompletedProcess[str]:
+    """Run a command; with variables of the environment, which imports may read, from scratch."""
+    words = [str(argument) for argument in arguments]
+    if not environment and (forking := worker()) is not None:
+        return forking.run(words, folder or Path.cwd(), timeout)
     return subprocess.run(
-        [*COMMAND, *map(str, arguments)],
-        env={**os.environ, "COLUMNS": "200", **environment},
+        [*COMMAND, *words],
+        cwd=folder,
+        env={**os.environ, **_WIDE, **environment},
         capture_output=True,
         text=True,
         timeout=timeout,

@@ -22,6 +22,7 @@ from meshlab_spectral.batch import cluster as cluster_module
 from meshlab_spectral.batch.jobs import FileResult, Job
 from meshlab_spectral.batch.processes import Processes
 
+MESHES = 8  # more than the two workers have done when a signal arrives
 _Doing = Callable[[Processes, Job], FileResult]
 
 
@@ -149,7 +150,7 @@ def test_files_queued_at_a_worker_that_dies_are_tried_again(
 
 def test_an_interrupted_batch_ends_its_processes_on_the_workers_and_resumes(tmp_path: Path) -> None:
     folder, out = tmp_path / "in", tmp_path / "out"
-    make_meshes(folder, 12, rings=32)
+    make_meshes(folder, MESHES, rings=32)
     with dask_cluster(tmp_path) as (address, (_, *started)):
         workers = [psutil.Process(process.pid) for process in started]
         options = ["--output", out, "--steps", 600, "--scheduler", address]
@@ -169,13 +170,14 @@ def test_an_interrupted_batch_ends_its_processes_on_the_workers_and_resumes(tmp_
         assert {record["outcome"] for record in done} == {"filtered"}
         resumed = command("batch", folder, *options, "--resume")
         assert resumed.returncode == 0, resumed.stderr
-        assert f"{12 - len(done)} filtered, 0 failed, {len(done)} already done" in resumed.stdout
+        rest = MESHES - len(done)
+        assert f"{rest} filtered, 0 failed, {len(done)} already done" in resumed.stdout
         assert not list(out.rglob("*.partial"))
 
 
 def test_a_killed_batch_ends_its_work_on_the_workers(tmp_path: Path) -> None:
     folder, out = tmp_path / "in", tmp_path / "out"
-    make_meshes(folder, 12, rings=32)
+    make_meshes(folder, MESHES, rings=32)
     with dask_cluster(tmp_path) as (address, (_, *started)):
         workers = [psutil.Process(process.pid) for process in started]
         batch = start_batch(folder, "--output", out, "--steps", 600, "--scheduler", address)
@@ -185,7 +187,7 @@ def test_a_killed_batch_ends_its_work_on_the_workers(tmp_path: Path) -> None:
             batch.kill()
             batch.communicate()
         wait_until(lambda: not any(p.cpu_percent(0.5) > 0 for p in meshlab_processes(workers)))
-        assert len(contents(out)) < 12
+        assert len(contents(out)) < MESHES
 
 
 def test_a_meshlab_process_killed_on_a_worker_is_replaced(
@@ -215,7 +217,7 @@ def test_a_cluster_whose_processes_do_not_start_is_reported(
 
 def test_a_cluster_that_disappears_midway_is_reported_in_one_line(tmp_path: Path) -> None:
     folder, out = tmp_path / "in", tmp_path / "out"
-    make_meshes(folder, 12, rings=32)
+    make_meshes(folder, MESHES, rings=32)
     with dask_cluster(tmp_path) as (address, (scheduler, *_)):
         batch = start_batch(folder, "--output", out, "--steps", 60, "--scheduler", address)
         try:

@@ -132,9 +132,9 @@ def test_the_death_of_the_working_process_is_reported(long_run: subprocess.Popen
     assert "Traceback" not in stderr
 
 
-def test_progress_is_shown_on_a_terminal_only(samples: Path, tmp_path: Path) -> None:
+def test_progress_is_shown_on_a_terminal_only(cow: Path, tmp_path: Path) -> None:
     # Enough steps that some are seen, however fast they are.
-    arguments = ["filter", str(samples / "bunny.obj"), str(tmp_path / "out.ply"), "--steps", "100"]
+    arguments = ["filter", str(cow), str(tmp_path / "out.ply"), "--steps", "100"]
     arguments.append("--overwrite")
     code, stdout, shown = command_on_terminal(*arguments)
     assert code == 0

@@ -129,8 +129,14 @@ def test_pip_installs_the_command_under_its_name() -> None:
 
 
 def test_a_preset_equals_its_options(cow: Path, tmp_path: Path) -> None:
-    """In the shell and in Python."""
+    """In Python; and in the shell, of which the first of each filter is run."""
+    tables = set[type[Any]]()
     for name, preset in PRESETS.items():
+        function = filter_preset if preset.table is FilterOptions else denoise_preset
+        assert function(name) == preset.table(**preset.options)
+        if preset.table in tables:
+            continue
+        tables.add(preset.table)
         given = {**preset.table().as_dict(), **preset.options}
         spelled = [
             f"--{key.replace('_', '-')}" + ("" if given[key] is True else f"={given[key]}")
@@ -140,8 +146,6 @@ def test_a_preset_equals_its_options(cow: Path, tmp_path: Path) -> None:
         command(preset.table.TABLE, cow, one, "--preset", name)
         command(preset.table.TABLE, cow, other, *spelled)
         assert one.read_bytes() == other.read_bytes(), name
-        function = filter_preset if preset.table is FilterOptions else denoise_preset
-        assert function(name) == preset.table(**preset.options)
 
 
 def test_presets_of_the_user_are_saved_and_used(

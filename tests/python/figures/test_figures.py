@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Any
 
 import denoising
+import draw
 import matplotlib.image
 import numpy as np
 import parts
@@ -20,6 +21,7 @@ from eigenfunctions import most_alike
 from figure_numbers import recorded
 from helpers import diagonal, largest_distance, mesh_set_of
 from meshlab_spectral import filter_mesh, manifold_harmonics
+from meshlab_spectral.figures import sheet
 from meshlab_spectral.figures.pictures import Frame, Panel, View, render
 from meshlab_spectral.filters.arrays import lumped_areas
 from meshlab_spectral.filters.options import FilterOptions
@@ -75,8 +77,9 @@ def test_every_figure_of_every_mesh_is_drawn(meshes: list[Path], tmp_path: Path)
 
 @pytest.mark.slow
 def test_all_pictures_are_drawn_and_their_numbers_recorded(
-    decimated: Callable[..., Any], tmp_path: Path
+    decimated: Callable[..., Any], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
+    monkeypatch.setattr(sheet, "_PAGE_PIXELS", 1e5)
     mesh_set = mesh_set_of(*decimated("cow.obj", 1000))
     for folder in (tmp_path / "meshes", tmp_path / Path(denoising.PAIRS).name):
         folder.mkdir()
@@ -91,8 +94,9 @@ def test_all_pictures_are_drawn_and_their_numbers_recorded(
     ):
         mesh_set.save_current_mesh(str(tmp_path / name))
     names = [*parts.PICTURES, "harmonics_dragon_40k", "denoise_trimstar_n3"]
-    done = script("draw.py", tmp_path / "meshes", tmp_path / "new", *names)
-    assert done.returncode == 0, done.stderr
+    words = ["draw.py", tmp_path / "meshes", tmp_path / "new", *names]
+    monkeypatch.setattr(sys, "argv", [str(word) for word in words])
+    draw._main()
     assert {path.stem for path in (tmp_path / "new").glob("*.png")} == set(names)
     numbers = recorded(tmp_path / "new")
     assert {Path(picture).stem for picture in numbers} == set(names)

@@ -59,6 +59,10 @@ def test_a_notebook_shows_the_texture_that_the_command_draws(rough: Arrays, tmp_
     assert done.returncode == 0, done.stderr
     figure = plot_texture(rough, surface_texture(rough, waviness=1.5), name="rough.ply")
     drawn = matplotlib.image.imread(picture)[..., :3]
+    in_colours = np.ptp(drawn[: -drawn.shape[0] // 3], axis=2) > 0.15
+    half = drawn.shape[1] // 2
+    assert not in_colours[:, :half].any(), "the shape is grey"
+    assert in_colours[:, half:].mean() > 0.1
     np.testing.assert_allclose(shown(figure), drawn, atol=0.01)
 
 

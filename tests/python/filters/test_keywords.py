@@ -3,12 +3,8 @@
 from __future__ import annotations
 
 import inspect
-import os
 import re
-import subprocess
-import sys
 from dataclasses import fields
-from pathlib import Path
 from typing import Any, get_args, get_type_hints
 
 import jedi
@@ -70,31 +66,3 @@ def test_a_notebook_completes_option_names(call: str, completions: list[str]) ->
 
 def meshlab_spectral_names() -> dict[str, Any]:
     return {name: getattr(meshlab_spectral, name) for name in meshlab_spectral.__all__}
-
-
-def test_a_type_checker_knows_options(tmp_path: Path) -> None:
-    script = tmp_path / "script.py"
-    script.write_text(
-        "from meshlab_spectral import filter_mesh, filter_scalars\n"
-        'filter_mesh([], [], feature_size="2%", steps=3)\n'
-        'filter_mesh([], [], feature_siz="2%")\n'
-        'filter_mesh([], [], response="gausian")\n'
-        "filter_scalars([], [], [], steps=3)\n"
-    )
-    package = Path(meshlab_spectral.__file__).parents[1]
-    # mypy finds an installed package by itself, and refuses to be told where.
-    search = {} if package.name == "site-packages" else {"MYPYPATH": str(package)}
-    settings = ("--strict", "--no-incremental", "--follow-imports=silent", "--python-version=3.11")
-    done = subprocess.run(
-        [sys.executable, "-m", "mypy", *settings, script.name],
-        cwd=tmp_path,
-        env={**os.environ, **search},
-        capture_output=True,
-        text=True,
-        check=False,
-    )
-    errors = [line for line in done.stdout.splitlines() if ": error:" in line]
-    # An overloaded function has two for an unknown keyword.
-    lines = sorted({line.split(":")[1] for line in errors})
-    assert lines == ["3", "4", "5"], done.stdout + done.stderr
-    assert 'did you mean "feature_size"?' in errors[0]

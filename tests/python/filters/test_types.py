@@ -55,6 +55,11 @@ def test_every_kind_of_size_is_an_option_of_its_type() -> None:
         FilterOptions(feature_sise="2%")  # type: ignore[call-arg]
     with pytest.raises(OptionError):
         FilterOptions(boundary="open")  # type: ignore[arg-type]
+    V, F = torus()
+    with pytest.raises(OptionError):
+        filter_mesh(V, F, feature_sise="2%")  # type: ignore[call-overload]
+    with pytest.raises(OptionError):
+        filter_mesh(V, F, response="gausian")  # type: ignore[call-overload]
 
 
 def test_what_is_given_is_what_is_returned() -> None:

@@ -2,17 +2,13 @@
 
 from __future__ import annotations
 
-import json
-import os
 import shutil
-import subprocess
-import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
 import tomli_w
-from commands import PRECIOUS, write_ply
+from commands import PRECIOUS, command, write_ply
 from format_samples import SAMPLES
 from fuzz.damages import Damage, damaged, damages
 from fuzz.runs import as_many_as
@@ -20,7 +16,6 @@ from hypothesis import given
 from hypothesis import strategies as st
 from meshlab_spectral import FilterOptions
 
-WORKER = Path(__file__).with_name("command_worker.py")
 EXIT_CODES = {0, 1, 2, 130}
 
 Answer = tuple[int, str, str]
@@ -112,30 +107,14 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @pytest.fixture(scope="module")
-def run(folder: Path) -> Iterator[Callable[[list[str]], Answer]]:
+def run(folder: Path) -> Callable[[list[str]], Answer]:
     """Run the command in that folder."""
-    worker = subprocess.Popen(
-        [sys.executable, str(WORKER)],
-        cwd=folder,
-        env={**os.environ, "COLUMNS": "200"},
-        stdin=subprocess.PIPE,
-        stdout=subprocess.PIPE,
-        text=True,
-    )
-    assert worker.stdin is not None
-    assert worker.stdout is not None
-    stdin, stdout = worker.stdin, worker.stdout
 
     def ask(arguments: list[str]) -> Answer:
-        stdin.write(json.dumps(arguments) + "\n")
-        stdin.flush()
-        code, output, errors = json.loads(stdout.readline())
-        return code, output, errors
+        done = command(*arguments, folder=folder)
+        return done.returncode, done.stdout, done.stderr
 
-    yield ask
-    stdin.close()
-    assert worker.wait(60) == 0
-    stdout.close()
+    return ask
 
 
 def assert_civil(answer: Answer) -> None:
