@@ -129,14 +129,12 @@ def test_pip_installs_the_command_under_its_name() -> None:
 
 
 def test_a_preset_equals_its_options(cow: Path, tmp_path: Path) -> None:
-    """In Python; and in the shell, of which the first of each filter is run."""
-    tables = set[type[Any]]()
+    """In Python; and in the shell, where every option is tried above, two of them."""
     for name, preset in PRESETS.items():
         function = filter_preset if preset.table is FilterOptions else denoise_preset
         assert function(name) == preset.table(**preset.options)
-        if preset.table in tables:
+        if name not in ("print", "museum"):  # of each filter one, with a switch and a length
             continue
-        tables.add(preset.table)
         given = {**preset.table().as_dict(), **preset.options}
         spelled = [
             f"--{key.replace('_', '-')}" + ("" if given[key] is True else f"={given[key]}")
