@@ -170,9 +170,10 @@ bool isDefaultFeatureSize(double size, const MeshLengths& mesh) {
     return std::abs(size - usual) <= kRounding * usual;
 }
 
-/// What a filter does to sharp edges that it was not told to keep: where two of them follow each
-/// other, and move far more than half of the rest.
-std::string creaseText(const FilterInput& input, const Vertices& after, double diagonal) {
+/// Warns of sharp edges that a filter rounds, as it was not told to keep them: where two of them
+/// follow each other, and move far more than half of the rest.
+std::vector<std::string> creaseWarnings(const FilterInput& input, const Vertices& after,
+                                        double diagonal) {
     constexpr double kSharp = 50.0;  // degrees between planes
     constexpr double kMore = 30.0;   // a statue's curls 15 times, a part by CAD 99, a wing 115
     constexpr std::size_t kFewest = 10;
@@ -196,10 +197,10 @@ std::string creaseText(const FilterInput& input, const Vertices& after, double d
     if (!(std::sqrt(squares / static_cast<double>(on.size())) > kMore * *middle)) return {};
     const double most = *std::max_element(on.begin(), on.end());
     std::ostringstream text;
-    text << std::setprecision(2) << "\n  creases: rounded, " << on.size()
-         << " vertices along sharp edges moved by up to " << most << " (" << 100.0 * most / diagonal
-         << " % of the diagonal); crease_angle = 50 keeps them";
-    return text.str();
+    text << std::setprecision(2) << on.size() << " vertices along sharp edges moved by up to "
+         << most << " (" << 100.0 * most / diagonal
+         << " % of the diagonal), which rounds them: |crease_angle = 50| keeps them";
+    return {text.str()};
 }
 
 FilterOutput run(const FilterInput& input, const MeshLengths& mesh, const Values& given,
@@ -224,11 +225,13 @@ FilterOutput run(const FilterInput& input, const MeshLengths& mesh, const Values
     output.report = reportOf(fractionalEntries(), result);
     output.text = fractionalText(options, result, mesh.diagonal, {},
                                  call.result == Wanted::Details ? "Details found" : "");
-    if (options.creaseAngle == 0.0) output.text += creaseText(input, result.V, mesh.diagonal);
     output.warnings = fractionalWarnings(options, result, mesh.diagonal);
     append(percentageWarnings(mesh), output.warnings);
-    if (!input.whole && call.result != Wanted::Details)
+    if (!input.whole && call.result != Wanted::Details) {
         append(periodicWarnings(input.V, input.F, result.V), output.warnings);
+        if (options.creaseAngle == 0.0)
+            append(creaseWarnings(input, result.V, mesh.diagonal), output.warnings);
+    }
     append(unusedWarnings(fields, call), output.warnings);
     if (call.result == Wanted::Details)
         output.details = input.V - result.V;
