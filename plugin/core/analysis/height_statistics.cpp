@@ -32,6 +32,10 @@ void measureHeights(const Eigen::VectorXd& h, const Eigen::VectorXd& areas,
     texture.Sv = -lowest;
     texture.Sz = highest - lowest;
     if (texture.Sq == 0.0) return;
+    constexpr double kFlat = 1e-3;
+    for (Index i = 0; i < h.size(); ++i)
+        if (counts[i] && std::abs(h[i]) < kFlat * texture.Sq)
+            texture.flat += areas[i] / texture.area;
     texture.Ssk = cubes / texture.area / std::pow(texture.Sq, 3);
     texture.Sku = fourths / texture.area / std::pow(texture.Sq, 4);
 }

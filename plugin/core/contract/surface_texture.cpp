@@ -225,6 +225,14 @@ FilterOutput run(const FilterInput& input, const MeshLengths& mesh, const Values
             "cylinder that the surface is as |form|");
     if (const std::string note = leftOutText(texture); !note.empty())
         output.warnings.push_back(note);
+    // Sq is half of this lower. Waves and noise have .1 % at that height, a terrain with a flat rim
+    // 2.5, the flat faces of a machine part 5.
+    constexpr double kFlat = 0.04;
+    if (texture.flat > kFlat)
+        output.warnings.push_back(
+            shortText(100.0 * texture.flat) +
+            " % of the area has no texture: its heights are below a thousandth of Sq, and lower "
+            "all means. Select what is rough, such as where nz > 0.5");
     if (!texture.accuracyReached)
         output.warnings.push_back(
             accuracyWarning(kTextureAccuracy, texture.errorEstimate / mesh.diagonal));

@@ -1,6 +1,7 @@
 #include "core/mesh/periodic.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <utility>
@@ -43,20 +44,38 @@ bool isWall(const Vertices& V, const std::vector<Rim>& rims, const std::vector<P
     return 2 * crossing <= all;
 }
 
-/// Whether a consistently oriented surface has no boundary: around each vertex, corners that follow
-/// and corners that precede it are the same.
-bool isClosed(Index n, const Faces& F) {
-    Eigen::Matrix<std::int64_t, Eigen::Dynamic, 1> sums;
-    sums.setZero(n);
-    for (Index t = 0; t < F.rows(); ++t)
-        for (int c = 0; c < 3; ++c) sums[F(t, c)] += F(t, (c + 1) % 3) - F(t, (c + 2) % 3);
-    return (sums.array() == 0).all();
+/// Vertices around which corners that follow and corners that precede them are not the same: all of
+/// the boundary, and those where triangles are not consistently oriented.
+std::vector<bool> openVertices(Index n, const Faces& F) {
+    const auto mixed = [](int i) {  // sums of it are equal if vertices are
+        const std::uint64_t product = (static_cast<std::uint64_t>(i) + 1) * 0x9e3779b97f4a7c15U;
+        return (product ^ (product >> 29)) * 0xbf58476d1ce4e5b9U;
+    };
+    std::vector<std::uint64_t> sums(static_cast<std::size_t>(n), 0);
+    for (Index t = 0; t < F.rows(); ++t) {
+        const std::array<std::uint64_t, 3> of = {mixed(F(t, 0)), mixed(F(t, 1)), mixed(F(t, 2))};
+        for (int c = 0; c < 3; ++c) sums[F(t, c)] += of[(c + 1) % 3] - of[(c + 2) % 3];
+    }
+    std::vector<bool> isOpen(sums.size());
+    for (std::size_t i = 0; i < sums.size(); ++i) isOpen[i] = sums[i] != 0;
+    return isOpen;
 }
 
-std::vector<Rim> rimsOf(const Faces& F) {
+/// The triangles with a side between two of these vertices.
+Faces trianglesAlong(const Faces& F, const std::vector<bool>& isOpen) {
+    std::vector<Index> along;
+    for (Index t = 0; t < F.rows(); ++t)
+        if (isOpen[F(t, 0)] + isOpen[F(t, 1)] + isOpen[F(t, 2)] > 1) along.push_back(t);
+    return F(along, Eigen::all);
+}
+
+/// @param isOpen  of the whole mesh: other edges have a side in triangles that are not here.
+std::vector<Rim> rimsOf(const Surface& surface, const std::vector<bool>& isOpen) {
+    const Faces& F = surface.F;
     std::vector<Rim> rims;
     SidesByEdge(F).forEachEdge([&](auto first, auto end) {
         if (end - first != 1) return;
+        if (!isOpen[surface.vertex[first->low]] || !isOpen[surface.vertex[first->high]]) return;
         const int t = first->face(), c = first->corner();
         rims.push_back({F(t, c), F(t, (c + 1) % 3), F(t, (c + 2) % 3)});
     });
@@ -109,13 +128,11 @@ std::vector<Pair> pairsOfCells(const Vertices& V, const std::vector<Rim>& rims) 
 }
 
 /// The same for a mesh whose seams are joined.
-std::vector<Pair> pairsOfJoined(const Vertices& V, const Faces& F) {
-    if (V.rows() == 0) return {};
-    const Eigen::RowVector3d low = V.colwise().minCoeff(), high = V.colwise().maxCoeff();
-    const double round = kRoundOff * boundingBoxDiagonal(V);
-    if ((high - low).minCoeff() <= round) return {};  // a flat rectangle is no cell
-    if (isClosed(V.rows(), F)) return {};
-    const std::vector<Rim> rims = rimsOf(F);
+/// @param low, high  corners of the box of the whole mesh.
+std::vector<Pair> pairsOfJoined(const Vertices& V, const std::vector<Rim>& rims,
+                                const Eigen::RowVector3d& low, const Eigen::RowVector3d& high) {
+    const double round = kRoundOff * (high - low).norm();
+    if (rims.empty() || (high - low).minCoeff() <= round) return {};  // a flat rectangle is no cell
     std::vector<bool> isBoundary(static_cast<std::size_t>(V.rows()), false);
     for (const Rim& rim : rims) isBoundary[rim.i] = isBoundary[rim.j] = true;
     std::vector<Pair> pairs;
@@ -166,10 +183,19 @@ std::vector<Pair> pairsOfJoined(const Vertices& V, const Faces& F) {
 }  // namespace
 
 std::vector<std::array<Index, 2>> periodicPairs(const Vertices& V, const Faces& F) {
-    if (isClosed(V.rows(), F)) return {};
+    const std::vector<bool> isOpen = openVertices(V.rows(), F);
+    const Faces along = trianglesAlong(F, isOpen);
+    if (along.rows() == 0) return {};
     // The sides of a box whose faces have corners of their own are no boundary.
-    const Surface surface = joinedSurface(V, F);
-    std::vector<Pair> pairs = pairsOfJoined(surface.X, surface.F);
+    const Surface surface = joinedSurface(V, along);
+    Eigen::RowVector3d low = V.row(F(0, 0)), high = low;
+    for (const int i : F.reshaped()) {
+        low = low.cwiseMin(V.row(i));
+        high = high.cwiseMax(V.row(i));
+    }
+    const Eigen::RowVector3d moved = surface.X.row(0) - V.row(surface.vertex[0]);
+    std::vector<Pair> pairs =
+        pairsOfJoined(surface.X, rimsOf(surface, isOpen), low + moved, high + moved);
     for (Pair& pair : pairs)
         for (Index& i : pair) i = surface.vertex[i];
     return pairs;

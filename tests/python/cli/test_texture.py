@@ -57,6 +57,8 @@ def test_a_cutoff_that_does_not_fit_is_refused(rough: Path) -> None:
     assert done.returncode == 2
     assert "noise = 0.4" in done.stderr
     assert "Traceback" not in done.stderr
+    for name in ("--waviness", "--nesting-index-l"):
+        assert f"Error: {name}: 0: must be" in command("texture", rough, f"{name}=0").stderr
 
 
 def assert_shows_the_deviation(path: Path) -> None:

@@ -322,6 +322,8 @@ def test_only_the_selection_is_measured() -> None:
     np.testing.assert_array_equal(texture.height[chosen], whole.height[chosen])
     assert texture.vertices_evaluated < whole.vertices_evaluated
     assert texture.Sq > whole.Sq
+    assert any("of the area has no texture" in warning for warning in whole.warnings)
+    assert not any("has no texture" in warning for warning in texture.warnings)
 
 
 def test_histogram_and_bearing_curve_are_those_of_the_heights() -> None:
