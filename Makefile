@@ -75,10 +75,10 @@ test: build $(PACKAGE)  ## run every test, C++ and Python
 quick: build  ## run the tests of what has changed since main, and the contract's: a minute
 	$(BIN)/python tests/quick.py
 
-wheel: $(VENV)  ## build the wheel that PyPI takes: build/wheel/*.whl
+wheel: $(PACKAGE)  ## build the wheel that PyPI takes: build/wheel/*.whl
 	rm -rf build/wheel/linux build/wheel/*.whl
-	plugin/cmake/static_muparser.sh $(MUPARSER)
-	CMAKE_ARGS="$(CMAKE_OPTIONS)" $(BIN)/pip wheel $(PACKAGE_OPTIONS) --wheel-dir build/wheel/linux ./python
+	$(BIN)/meshlab-spectral --man > build/meshlab-spectral.1
+	CMAKE_ARGS="$(CMAKE_OPTIONS) -DSPECTRAL_MANUAL=$(CURDIR)/build/meshlab-spectral.1" $(BIN)/pip wheel $(PACKAGE_OPTIONS) --wheel-dir build/wheel/linux ./python
 	PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/auditwheel repair --plat $(MANYLINUX) --wheel-dir build/wheel \
 	  $(patsubst %,--exclude %,$(HOST_LIBRARIES)) build/wheel/linux/*.whl
 

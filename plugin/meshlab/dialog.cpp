@@ -7,12 +7,15 @@
 #include <algorithm>
 
 #include "core/contract/equalizer.h"
+#include "core/contract/presets.h"
 #include "core/mesh/measures.h"
 #include "meshlab/host_workarounds/apply_anew.h"
 #include "meshlab/host_workarounds/closed_preview.h"
+#include "meshlab/host_workarounds/filter_dialog.h"
 #include "meshlab/host_workarounds/fit_screen.h"
 #include "meshlab/host_workarounds/number_fields.h"
 #include "meshlab/host_workarounds/octave_sliders.h"
+#include "meshlab/host_workarounds/preset_box.h"
 #include "meshlab/host_workarounds/share_slider.h"
 #include "meshlab/mesh_conversion.h"
 
@@ -120,6 +123,36 @@ void add(const spectral::Filter& filter, const Parameter& one, const spectral::M
     }
 }
 
+/// What fields of a dialog hold: length units, numbers of choices, texts.
+QVariant fieldValue(const Parameter& parameter, const spectral::Value& given,
+                    const spectral::MeshLengths& mesh) {
+    const spectral::Value value = spectral::converted(parameter, given, mesh);
+    if (const auto* text = std::get_if<std::string>(&value)) return QString::fromStdString(*text);
+    if (const auto* number = std::get_if<double>(&value)) return *number;
+    if (const auto* integer = std::get_if<int>(&value)) return *integer;
+    return std::get<bool>(value);
+}
+
+/// Lets the user start from the presets of a filter, if there are any.
+/// @param labels  of the parameters' fields.
+void offerPresets(const spectral::Filter& filter, const spectral::MeshLengths& mesh,
+                  const QStringList& labels) {
+    std::vector<FieldValues> boxes;
+    const auto offer = [&](const QString& name, const spectral::Values& options) {
+        boxes.push_back({name, {}});
+        for (const Parameter& one : filter.parameters) {
+            const auto found = options.find(one.name);
+            boxes.back().values.push_back(
+                fieldValue(one, found != options.end() ? found->second : one.usual, mesh));
+        }
+    };
+    offer("defaults", {});
+    for (const spectral::Preset& preset : spectral::allPresets())
+        if (preset.filter == filter.pythonName)
+            offer(QString::fromStdString(preset.name + ": " + preset.purpose), preset.options);
+    if (boxes.size() > 1) addPresetBox(labels, boxes);
+}
+
 }  // namespace
 
 QString asHtml(const std::string& text) {
@@ -180,15 +213,21 @@ void recordOriginalKept(MeshDocument& document) {
 }
 
 void adaptDialog(const spectral::Filter& filter, const spectral::MeshLengths& mesh) {
+    if (!hasWindows()) return;
     checkNumberFields(numberLabels(filter).all);
     QString accurate, size;
-    QStringList sliders;
+    QStringList sliders, labels;
     for (const Parameter& one : filter.parameters) {
         if (one.name == filter.accurate) accurate = QString::fromStdString(one.label);
         if (one.name == "power") addShareSlider(QString::fromStdString(one.label));
         if (one.kind == Kind::Length) size = lengthLabel(one, mesh);
         if (isSlider(filter, one)) sliders.push_back(sliderLabel(filter, one, mesh));
+        labels.push_back(isSlider(filter, one)      ? sliders.back()
+                         : one.kind == Kind::Length ? lengthLabel(one, mesh)
+                         : one.name == "selected"   ? QString()  // a choice of the mesh
+                                                    : QString::fromStdString(one.label));
     }
+    offerPresets(filter, mesh, labels);
     applyAnew(accurate, kKeepOriginalLabel);
     endPreviewOnClose();
     fitDialogOnScreen();

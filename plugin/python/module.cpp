@@ -219,6 +219,7 @@ NB_MODULE(_core, m) {
     python::translateErrors();
     python::endRunsAtExit();
     m.def("filters", python::describedFilters);
+    m.def("presets", python::describedPresets);
     m.def("apply", python::applyFilter, "name"_a, "vertices"_a, "faces"_a, "options"_a,
           nb::kw_only(), "selected"_a = nb::none(), "values"_a = nb::none(), "gain"_a = nb::none(),
           "whole"_a = nb::none(), "progress"_a = nb::none(), "threads"_a = 0, "is_shell"_a = false);

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "arrays.h"
+#include "core/contract/presets.h"
 #include "core/support/errors.h"
 
 namespace spectral::python {
@@ -98,6 +99,14 @@ nb::list describedFilters() {
         filters.append(result);
     }
     return filters;
+}
+
+nb::list describedPresets() {
+    nb::list presets;
+    for (const Preset& preset : allPresets())
+        presets.append(nb::make_tuple(preset.name, preset.filter, preset.purpose,
+                                      dictOf(Values(preset.options))));
+    return presets;
 }
 
 }  // namespace spectral::python

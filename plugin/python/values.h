@@ -18,4 +18,7 @@ nb::dict dictOf(Values&& report);
 /// Everything about all filters that hosts show: a list of dicts.
 nb::list describedFilters();
 
+/// All presets: a list of (name, python name of the filter, purpose, options).
+nb::list describedPresets();
+
 }  // namespace spectral::python

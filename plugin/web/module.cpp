@@ -12,6 +12,7 @@
 
 #include "core/contract/error_names.h"
 #include "core/contract/filter.h"
+#include "core/contract/presets.h"
 #include "core/support/errors.h"
 #include "core/support/memory.h"
 #include "core/support/threads.h"
@@ -148,9 +149,23 @@ val described(const Parameter& parameter) {
     return made;
 }
 
+val presetsOf(const Filter& filter) {
+    val list = val::array();
+    for (const Preset& preset : allPresets()) {
+        if (preset.filter != filter.pythonName) continue;
+        val options = val::object(), made = val::object();
+        for (const auto& [name, value] : preset.options) options.set(name, jsOf(value));
+        made.set("name", preset.name);
+        made.set("purpose", preset.purpose);
+        made.set("options", options);
+        list.call<void>("push", made);
+    }
+    return list;
+}
+
 }  // namespace
 
-/// All filters: names, help, parameters, entries of reports.
+/// All filters: names, help, parameters, presets, entries of reports.
 val filters() {
     return listOf(allFilters(), [](const Filter& filter) {
         val made = val::object();
@@ -158,6 +173,7 @@ val filters() {
         made.set("pythonName", filter.pythonName);
         made.set("help", filter.help);
         made.set("parameters", listOf(filter.parameters, described));
+        made.set("presets", presetsOf(filter));
         made.set("report", listOf(filter.report, [](const ReportEntry& entry) {
                      val one = val::object();
                      one.set("name", entry.name);

@@ -17,7 +17,7 @@ from pathlib import Path
 
 import numpy as np
 from figure_numbers import Drawing, Numbers
-from meshlab_spectral.figures.pictures import SIGNED_COLOURS, Frame, Panel, render, to_full_colours
+from meshlab_spectral.figures.pictures import Frame, Panel, render, to_full_colours
 from meshlab_spectral.figures.sheet import Sheet
 from meshlab_spectral.figures.spectrum import filter_name
 from meshlab_spectral.filters.arrays import lumped_areas
@@ -134,5 +134,5 @@ def _draw(subject: Subject, columns: dict[str, list[Match]], scale: float, path:
                 label += f", correlation {match.correlation:.2f}"
             panel = Panel("", V, subject.F, to_full_colours(match.values, d))
             sheet.picture(row, column, render(panel, frame, sheet.pixels), label)
-    sheet.colour_bar(SIGNED_COLOURS, ("\N{MINUS SIGN}", "0", "+"))
+    sheet.colour_bar(("\N{MINUS SIGN}", "0", "+"))
     sheet.save(path)

@@ -9,11 +9,11 @@ import functools
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 from figure_numbers import Drawing, MeshFile, Numbers, diagonal, displacement, labelled
-from meshlab_spectral.figures.pictures import SIGNED_COLOURS, Frame, Panel, View, render
+from meshlab_spectral.figures.pictures import Frame, Panel, View, render
 from meshlab_spectral.figures.sheet import FONT_SIZE, INK, Sheet
 from meshlab_spectral.files.comparison import compare
 from meshlab_spectral.files.meshes import load_arrays
@@ -50,29 +50,50 @@ class Row:
     view: View
 
 
+class Bar(NamedTuple):
+    """A colour bar; see `Sheet.colour_bar`."""
+
+    labels: tuple[str, str, str]
+    caption: str
+    least: float = 0.0
+
+
+def _up_to(share: float, what: str) -> Bar:
+    """Return a bar for lengths up to a share of the diagonal, in percent."""
+    return Bar(("0", f"{share / 2:.2g} %", f"{share:.2g} %"), f"{what}, % of the diagonal")
+
+
 def _drawing(
     numbers: Numbers,
     *rows: Row,
     plot: Callable[[Axes], None] | None = None,
     scale: float = SCALE,
+    bar: Bar | None = None,
 ) -> Drawing:
     """Make a picture of rows of meshes; `plot` fills one more column on the right."""
-    return Drawing(numbers, functools.partial(_draw, rows, plot, scale))
+    return Drawing(numbers, functools.partial(_draw, rows, plot, scale, bar))
 
 
 def _draw(
-    rows: tuple[Row, ...], plot: Callable[[Axes], None] | None, scale: float, path: Path
+    rows: tuple[Row, ...],
+    plot: Callable[[Axes], None] | None,
+    scale: float,
+    bar: Bar | None,
+    path: Path,
 ) -> None:
     frames = [Frame.around([panel.V for panel in row.panels], row.view) for row in rows]
     columns = len(rows[0].panels)
     aspects = [frame.width / frame.height for frame in frames]
     lines = max(1 + panel.label.count("\n") for row in rows for panel in row.panels)
-    sheet = Sheet(aspects, columns + (plot is not None), lines, scale)
+    footer = 0.0 if bar is None else 0.56
+    sheet = Sheet(aspects, columns + (plot is not None), lines, scale, footer)
     for i, (row, frame) in enumerate(zip(rows, frames, strict=True)):
         for j, panel in enumerate(row.panels):
             sheet.picture(i, j, render(panel, frame, sheet.pixels), panel.label)
     if plot is not None:
         plot(sheet.plot(0, columns))
+    if bar is not None:
+        sheet.colour_bar(bar.labels, bar.caption, bar.least)
     sheet.save(path)
 
 
@@ -120,16 +141,17 @@ def selection(mesh: MeshFile) -> Drawing:
     mesh_set.apply_filter(FILTER_NAME, feature_size=pymeshlab.PercentageValue(15))
     Y = mesh_set.current_mesh().vertex_matrix().copy()
     distance = np.linalg.norm(Y - V, axis=1)
-    moved = distance / np.quantile(distance, 0.99)
+    full = float(np.quantile(distance, 0.99))
     panels = [
         Panel("selected", V, F, np.clip(selected, *SHADES)),
         Panel("low-pass 15 % of the selection", Y, F),
-        Panel("how far each vertex moved", Y, F, np.clip(moved, *SHADES)),
+        Panel("how far each vertex moved", Y, F, np.clip(distance / full, *SHADES)),
     ]
     numbers = displacement(V, F, Y)
     numbers["vertices selected, %"] = 100 * float(np.mean(selected > 0))
     numbers["vertices moved, %"] = 100 * float(np.mean(distance > 0))
-    return _drawing(numbers, Row(panels, View()))
+    bar = _up_to(100 * full / diagonal(V), "right: displacement")
+    return _drawing(numbers, Row(panels, View()), bar=bar)
 
 
 def color_by_displacement(mesh: MeshFile) -> Drawing:
@@ -149,17 +171,8 @@ def color_by_displacement(mesh: MeshFile) -> Drawing:
         label = f"{label}\nat most {largest:.2g} % of the diagonal"
         panels.append(Panel(label, Y, F, outward, zero_line=False))
     caption = f"red: outwards, blue: inwards; full colours from {BOUND:g} % of the diagonal on"
-    return Drawing(numbers, functools.partial(_draw_signed, Row(panels, View()), caption))
-
-
-def _draw_signed(row: Row, caption: str, path: Path) -> None:
-    frame = Frame.around([panel.V for panel in row.panels], row.view)
-    aspect = frame.width / frame.height
-    sheet = Sheet([aspect], len(row.panels), 2, SCALE, footer=0.56)
-    for j, panel in enumerate(row.panels):
-        sheet.picture(0, j, render(panel, frame, sheet.pixels), panel.label)
-    sheet.colour_bar(SIGNED_COLOURS, (f"\N{MINUS SIGN}{BOUND:g} %", "0", f"{BOUND:g} %"), caption)
-    sheet.save(path)
+    bar = Bar((f"\N{MINUS SIGN}{BOUND:g} %", "0", f"{BOUND:g} %"), caption, -1.0)
+    return _drawing(numbers, Row(panels, View()), bar=bar)
 
 
 def bounded(mesh: MeshFile) -> Drawing:
@@ -178,7 +191,7 @@ def bounded(mesh: MeshFile) -> Drawing:
     numbers = displacement(V, F, limited)
     numbers["without a bound, %"] = 100 * float(moved[0].max()) / diagonal(V)
     numbers["bound reached, % of the surface"] = 100 * report["limited_share"]
-    return _drawing(numbers, Row(panels, View()))
+    return _drawing(numbers, Row(panels, View()), bar=_up_to(0.5, "right: displacement"))
 
 
 def creases(mesh: MeshFile) -> Drawing:
@@ -242,8 +255,9 @@ def quality(mesh: MeshFile) -> Drawing:
             error = float(np.sqrt(np.average((values - field) ** 2, weights=areas)))
             numbers[f"{label}: rms error"] = error
             label = f"{label}\nrms error {error:.2f}"
-        panels.append(Panel(label, V, F, np.clip(0.5 + 0.7 * values, *SHADES)))
-    return _drawing(numbers, Row(panels, View()))
+        panels.append(Panel(label, V, F, np.clip(values, -1, 1), zero_line=False))
+    bar = Bar(("\N{MINUS SIGN}1", "0", "1"), "value at each vertex", -1.0)
+    return _drawing(numbers, Row(panels, View()), bar=bar)
 
 
 def colors(mesh: MeshFile) -> Drawing:
@@ -282,7 +296,8 @@ def artefacts(mesh: MeshFile) -> Drawing:
         shares = subject.artefacts(options).length / subject.diagonal / FULL_RED
         label = f"{label}\nartefacts: rms {rms}, largest {largest}"
         panels.append(Panel(label, subject.filtered(options), subject.F, np.clip(shares, *SHADES)))
-    return _drawing(numbers, Row(panels, subject.view))
+    bar = _up_to(100 * FULL_RED, "length of artefacts")
+    return _drawing(numbers, Row(panels, subject.view), bar=bar)
 
 
 PICTURES: dict[str, Callable[[MeshFile], Drawing]] = {

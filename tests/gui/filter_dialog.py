@@ -139,6 +139,13 @@ class FilterDialog:
         self._desktop.press_keys("Home", *["Down"] * entries.index(value), "Return")
         wait_for(f"{value!r} to be chosen", lambda: box.name == value and popup.box.height == 0)
 
+    def start_from(self, preset: str) -> None:
+        """Choose a preset, which fills the fields."""
+        boxes = self.window.find_all("combo box")
+        names = {box: [item.name for item in box.find_all("list item")] for box in boxes}
+        (box,) = (box for box in boxes if "defaults" in names[box])
+        self._choose(box, next(name for name in names[box] if name.split(":")[0] == preset))
+
     def preview(self, wanted: bool) -> None:
         """Switch the preview on or off; when on, wait until the filter has run for it."""
         box = self.window.find("check box", "Preview")

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
 from xml.etree import ElementTree
 
 import numpy as np
@@ -26,6 +28,7 @@ from fractional import (
 )
 from meshlab import MeshLab
 from meshlab_spectral import FilterOptions
+from meshlab_spectral._core import filters, presets
 from scene import scene_of, share_changed
 from waiting import wait_for
 
@@ -343,3 +346,43 @@ def test_details_are_shown_in_colours_whose_range_is_logged(
     meshlab.save_mesh(saved)
     vertex = plyfile.PlyData.read(saved)["vertex"]
     assert len(np.unique([vertex["red"], vertex["blue"]], axis=1).T) > 100
+
+
+@pytest.mark.parametrize(
+    ("menu", "name"),
+    [("Filter (Fractional)", "caricature"), ("Equalizer", "relief"), ("Denoise", "teeth")],
+)
+def test_a_preset_fills_the_fields_and_is_previewed_once(
+    meshlab: MeshLab, bunny: Path, menu: str, name: str
+) -> None:
+    ((of, options),) = ((of, options) for one, of, _, options in presets() if one == name)
+    dialog = meshlab.open_filter(MENU[0], f"Spectral {menu}")
+    dialog.preview(True)
+    logged = len(meshlab.log())
+    dialog.start_from(name)
+    log = dialog.wait_for_result(logged)
+    call = dialog.pymeshlab_call()
+    assert log == meshlab.log()[logged:]
+    assert log.count("Applied filter: ") == 1
+    ms = load(bunny)
+    percent = {"%": 1, "e": 100 * mean_edge(ms) / diagonal(vertices(ms))}
+    (contract,) = (one for one in filters() if one["python_name"] == of)
+    parameters = {one["name"]: one for one in contract["parameters"]}
+
+    def compare(**given: Any) -> None:
+        wanted = {
+            key: parameters[key]["choices"].index(value)
+            if parameters[key]["kind"] == "choice"
+            else float(value[:-1]) * percent[value[-1]]
+            if parameters[key]["kind"] == "length"
+            else value
+            for key, value in options.items()
+        }
+        usual = {key: parameters[key]["default"] for key in options}
+        found = {key: getattr(value, "value", lambda v=value: v)() for key, value in given.items()}
+        changed = {key: value for key, value in wanted.items() if value != usual[key]}
+        assert found == pytest.approx(changed, rel=2e-3)  # the dialog's percentages are rounded
+
+    exec(call, {"ms": SimpleNamespace(**{of: compare}), "pymeshlab": pymeshlab})
+    dialog.start_from("defaults")
+    wait_for("another call", lambda: dialog.pymeshlab_call() != call)

@@ -98,6 +98,14 @@ await idle();
 assert.equal(await page.$eval('#field-feature_size', (input) => input.value), '20e');
 assert.match(await page.$eval('#same', (element) => element.textContent), /feature_size="20e"/);
 await both('filter');
+await page.select('#preset', 'caricature');
+assert.deepEqual(await page.$$eval('#field-filter_type, #field-feature_size, #field-pass_gain, #field-band_width', (inputs) => inputs.map((input) => input.value)),
+  ['band-pass', '25%', '2', '1.5']);
+await new Promise((done) => setTimeout(done, 600));
+await idle();
+assert.match(await log(), /band-pass/);
+await page.select('#preset', 'defaults');
+assert.equal(await page.$eval('#field-pass_gain', (input) => input.value), '1');
 await page.$eval('#field-feature_size', (input) => { input.value = '-3'; });
 await page.click('#run');
 await idle();

@@ -1,4 +1,4 @@
-// Smooths an icosahedron: removes details smaller than twice its diameter, in the paper's scheme.
+// Smooths an icosahedron in the paper's scheme: details below twice its diameter go.
 #include <cmath>
 #include <exception>
 #include <iostream>
@@ -24,8 +24,9 @@ int main() {
     options.basisUpdate = spectral::BasisUpdate::Full;
     try {
         const spectral::FilterResult result = spectral::fractionalFilter(V, F, options);
-        std::cout << "spike: " << V.row(0).norm() << " -> " << result.V.row(0).norm()
-                  << ", others: " << V.row(3).norm() << " -> " << result.V.row(3).norm() << '\n';
+        for (const int vertex : {0, 3})
+            std::cout << (vertex == 0 ? "spike: " : "others: ") << V.row(vertex).norm() << " -> "
+                      << result.V.row(vertex).norm() << '\n';
     } catch (const std::exception& error) {
         std::cerr << error.what() << '\n';
         return 1;

@@ -79,6 +79,8 @@ export interface Filter {
   pythonName: keyof Filters;
   help: string;
   parameters: Parameter[];
+  /** Options for a purpose; of all others the defaults hold. */
+  presets: {name: string; purpose: string; options: Record<string, boolean | number | string>}[];
   report: {name: string; meaning: string; isAlways: boolean}[];
 }
 

@@ -50,9 +50,33 @@ function sliderOf({kind, high, low, label, defaultInWords}, input, note, sizes) 
   return slider;
 }
 
+/** Fills the fields with options, and with defaults where there are none. */
+function fill(filter, form, options) {
+  for (const {name, kind, choices, default: usual} of filter.parameters) {
+    const input = form.elements[name], value = options[name] ?? usual;
+    if (!input) continue;
+    if (kind === 'bool') input.checked = value;
+    else if (kind === 'choice') input.selectedIndex = typeof value === 'string' ? choices.indexOf(value) : value;
+    else input.value = value;
+    input.dispatchEvent(new Event('input', {bubbles: true}));  // its slider follows
+  }
+}
+
+/** A box of presets, where all options have fields; null: there are none. */
+function presetsOf(filter) {
+  const presets = filter.presets.filter(({options}) => !Object.keys(options).some((name) => kLeftOut.has(name)));
+  if (presets.length === 0) return null;
+  const row = element('p', {className: 'row'}), box = element('select', {id: 'preset'});
+  box.add(new Option('defaults'));
+  for (const {name, purpose} of presets) box.add(new Option(`${name}: ${purpose}`, name));
+  box.addEventListener('change', () => fill(filter, box.form, presets[box.selectedIndex - 1]?.options ?? {}));
+  row.append(element('label', {htmlFor: box.id, textContent: 'Start from'}), box);
+  return row;
+}
+
 /** The fields of a filter; lesser ones behind a summary. @param sizes  of the mesh, if there is one */
 export function fieldsOf(filter, sizes) {
-  const fields = [], lesser = element('details', {});
+  const presets = presetsOf(filter), fields = presets ? [presets] : [], lesser = element('details', {});
   lesser.append(element('summary', {textContent: 'More'}));
   for (const parameter of filter.parameters) {
     if (kLeftOut.has(parameter.name)) continue;

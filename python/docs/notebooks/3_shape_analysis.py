@@ -53,7 +53,8 @@ plotter.show()
 
 heat = basis.heat_kernel_signature()
 plotter = pyvista.Plotter(window_size=(700, 600))
-plotter.add_mesh(bunny, scalars=np.log(heat[:, 8]), cmap="viridis", show_scalar_bar=False)
+title = {"title": "logarithm of the heat"}
+plotter.add_mesh(bunny, scalars=np.log(heat[:, 8]), cmap="viridis", scalar_bar_args=title)
 plotter.view_xy()
 plotter.camera.zoom(1.3)
 plotter.show()

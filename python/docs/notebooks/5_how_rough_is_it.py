@@ -44,8 +44,8 @@ surfalize.Surface(z, step, step).save(folder / "ground.x3p")
 
 
 def measured(*options: str) -> str:
-    command = [sys.executable, "-m", "meshlab_spectral.cli", "texture", str(folder / "ground.x3p")]
-    command += ["--form", "plane", "--nesting-index-l", "80", *options]
+    command = [sys.executable, "-m", "meshlab_spectral.cli", "texture"]
+    command += [str(folder / "ground.x3p"), "--form", "plane", "--nesting-index-l", "80", *options]
     return subprocess.run(command, check=True, capture_output=True, text=True).stdout
 
 

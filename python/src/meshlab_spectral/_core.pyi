@@ -10,6 +10,7 @@ _Lists = list[tuple[NDArray[np.int64], NDArray[np.float64]]]
 _Numbers = tuple[NDArray[np.float64], _Lists, int, int]
 
 def filters() -> list[dict[str, Any]]: ...
+def presets() -> list[tuple[str, str, str, dict[str, Any]]]: ...
 def apply(
     name: str,
     vertices: NDArray[np.float64],

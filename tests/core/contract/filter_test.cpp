@@ -7,6 +7,7 @@
 
 #include "core/contract/length.h"
 #include "core/contract/parameter.h"
+#include "core/contract/presets.h"
 #include "core/filter/fractional_filter.h"
 #include "core/support/errors.h"
 #include "support/shapes.h"
@@ -49,6 +50,15 @@ TEST(Filters, HaveUniqueNamesAndCompleteDescriptions) {
         EXPECT_EQ(&filterNamed(filter.pythonName), &filter);
     }
     EXPECT_THROW(filterNamed("apply_nothing"), std::out_of_range);
+}
+
+TEST(Presets, AreValidOptionsOfTheirFilters) {
+    std::set<std::string> names;
+    for (const Preset& preset : allPresets()) {
+        EXPECT_TRUE(names.insert(preset.name).second) << preset.name;
+        EXPECT_FALSE(preset.purpose.empty()) << preset.name;
+        EXPECT_NO_THROW(apply(filterNamed(preset.filter), sphere(), preset.options)) << preset.name;
+    }
 }
 
 TEST(Filters, ReportOnlyWhatTheyDescribe) {

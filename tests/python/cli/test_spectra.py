@@ -82,6 +82,7 @@ def test_resume_measures_only_what_the_report_does_not_hold(tmp_path: Path) -> N
     spectra = ["spectra", folder, "--output", table, "--basis-size", 20, "--workers", 1]
     assert command(*spectra).returncode == 0
     before = table.read_text()
+    assert_fails(command(*spectra), 2, "exists: choose another name, or replace it with")
     assert len(records(tmp_path / "spectra_report.jsonl")) == 2
     table.unlink()
     make_meshes(folder, 3)

@@ -126,6 +126,9 @@ def test_json_and_every_kind_of_plot_go_together(ending: str, cow: Path, tmp_pat
     start = {"png": b"\x89PNG", "pdf": b"%PDF", "svg": b"<?xml"}[ending]
     assert plot.read_bytes().startswith(start)
     assert list(tmp_path.iterdir()) == [plot]
+    refused = command(cow, "--output", plot)
+    assert refused.returncode == 2
+    assert "exists: choose another name" in messages_in(refused.stderr)
 
 
 def test_help_names_the_options_that_make_the_curve_and_no_others() -> None:

@@ -10,6 +10,7 @@ import typer
 from meshlab_spectral.batch.jobs import FileResult
 from meshlab_spectral.batch.settings import Settings
 from meshlab_spectral.batch.spectra import plan_spectra, write_table
+from meshlab_spectral.cli.colour_files import refuse_existing
 from meshlab_spectral.cli.filter_options import with_options
 from meshlab_spectral.cli.many_files import INTERRUPTED, Inputs, planning_shown, run_shown
 from meshlab_spectral.cli.messages import EXIT_FAILED, errors_reported, print_result
@@ -17,18 +18,14 @@ from meshlab_spectral.files.whole_files import remove_leftovers, resolved, writi
 from meshlab_spectral.filters.options import SpectrumOptions
 
 
-@with_options(
-    SpectrumOptions, Settings, leave_out=("name", "ending", "joined", "overwrite", "script")
-)
+@with_options(SpectrumOptions, Settings, leave_out=("name", "ending", "joined", "script"))
 def spectra_command(
     given: dict[str, Any],
     settings: Settings,
     inputs: Inputs,
     output: Annotated[
         Path,
-        typer.Option(
-            "--output", "-o", metavar="TABLE", help="Table to write; replaces an existing file."
-        ),
+        typer.Option("--output", "-o", metavar="TABLE", help="Table to write."),
     ] = Path("spectra.csv"),
 ) -> None:
     """Measure the geometry spectra of many meshes, in one table.
@@ -47,6 +44,7 @@ def spectra_command(
     with errors_reported(INTERRUPTED):
         with planning_shown(settings.resume):
             batch = plan_spectra(inputs, output, SpectrumOptions.from_dict(given), settings)
+        refuse_existing(output, settings.overwrite or settings.resume)
         remove_leftovers(resolved(output).parent, output.name)
         results: list[FileResult] = []
         with writing_whole(output) as scratch:

@@ -14,6 +14,7 @@ import typer
 from rich.table import Table
 from rich.text import Text
 
+from meshlab_spectral.cli.colour_files import Overwrite, refuse_existing
 from meshlab_spectral.cli.filter_options import (
     AsJson,
     OneMesh,
@@ -59,8 +60,8 @@ def spectrum_command(
             "--output",
             "-o",
             metavar="PLOT",
-            help="Plot to write: .png, .pdf or .svg; replaces an existing file. By default "
-            "MESH_spectrum.png in the current folder, or none with --json.",
+            help="Plot to write: .png, .pdf or .svg. By default MESH_spectrum.png in the current "
+            "folder, which a later plot replaces, or none with --json.",
         ),
     ] = None,
     basis_size: Annotated[
@@ -68,6 +69,7 @@ def spectrum_command(
     ] = SpectrumOptions.basis_size,
     mesh: OneMesh = None,
     recipe: Recipe = None,
+    overwrite: Overwrite = False,
     as_json: AsJson = False,
 ) -> None:
     """Plot the geometry spectrum of a mesh, to choose a filter.
@@ -85,7 +87,7 @@ def spectrum_command(
       meshlab-spectral spectrum scan.ply --json
     """
     if output is None and not as_json:
-        output = Path(f"{source.stem}_spectrum.png")
+        output, overwrite = Path(f"{source.stem}_spectrum.png"), True
     begin = time.monotonic()
     with errors_reported(), contextlib.ExitStack() as stack:
         options = chosen_options(FilterOptions, given, recipe)
@@ -97,6 +99,7 @@ def spectrum_command(
         if output is not None:  # fail before the computation if it cannot be written
             check_extras("plots")
             check_ending(output, "a plot is a picture", *FORMATS)
+            refuse_existing(output, overwrite)
             scratch = stack.enter_context(writing_whole(output))
         with progress_shown() as on_progress:
             report = measure_in_child(source, measured, on_progress, mesh)

@@ -14,7 +14,6 @@ from numpy.typing import ArrayLike, NDArray
 
 from meshlab_spectral.errors import ArrayError, OptionError
 from meshlab_spectral.figures.pictures import (
-    SIGNED_COLOURS,
     Frame,
     Panel,
     View,
@@ -76,9 +75,7 @@ def draw_basis_file(
     for cell, panel in enumerate(panels):
         picture = render(panel, frame, sheet.pixels)
         sheet.picture(*divmod(cell, columns), picture, panel.label)
-    sheet.colour_bar(
-        SIGNED_COLOURS, ("\N{MINUS SIGN}", "0", "+"), "wavelengths in % of the model's diagonal"
-    )
+    sheet.colour_bar(("\N{MINUS SIGN}", "0", "+"), "wavelengths in % of the model's diagonal")
     sheet.save(path)
 
 

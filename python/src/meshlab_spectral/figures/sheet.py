@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from meshlab_spectral.extras import check_extras
-from meshlab_spectral.figures.pictures import Image
+from meshlab_spectral.figures.pictures import SIGNED_COLOURS, Image
 from meshlab_spectral.files.whole_files import writing_whole
 
 if TYPE_CHECKING:
@@ -117,16 +117,20 @@ class Sheet:
         axes.tick_params(labelsize=FONT_SIZE - 1, colors=INK, length=2.5, pad=2)
         return axes
 
-    def colour_bar(self, colour_map: str, labels: tuple[str, str, str], caption: str = "") -> None:
+    def colour_bar(
+        self, labels: tuple[str, str, str], caption: str = "", least: float = -1.0
+    ) -> None:
         """Draw a colour bar in the footer, with labels at its left end, middle and right end.
 
-        A caption goes below it and needs one more line of footer.
+        It shows the colours of values of panels from `least` to 1. A caption goes below it and
+        needs one more line of footer.
         """
         width = min(2.4, 0.5 * self._width)
         bottom = 0.22 + (_LINE if caption else 0)
         axes = self._axes((self._width - width) / 2, bottom, width, 0.1)
         axes.set_xlabel(caption, fontsize=FONT_SIZE - 1, color=INK, labelpad=2)
-        axes.imshow(np.linspace(0, 1, 256)[None], aspect="auto", cmap=colour_map)
+        values = np.linspace(least, 1, 256)[None]
+        axes.imshow(values, aspect="auto", cmap=SIGNED_COLOURS, vmin=-1, vmax=1)
         axes.set_yticks([])
         axes.set_xticks([0, 127.5, 255], labels)
         axes.tick_params(labelsize=FONT_SIZE - 1, colors=INK, length=0, pad=3)

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from meshlab_spectral.figures.pictures import SIGNED_COLOURS, Frame, Panel, View, render
+from meshlab_spectral.figures.pictures import Frame, Panel, View, render
 from meshlab_spectral.figures.sheet import Sheet
 from meshlab_spectral.files.comparison import signed_colours
 
@@ -45,7 +45,7 @@ def signed_sheet(
     for column, panel in enumerate(panels):
         sheet.picture(0, column, render(panel, frame, sheet.pixels), panel.label)
     labels = (f"\N{MINUS SIGN}{extent:.3g}", "0", f"{extent:.3g}")
-    sheet.colour_bar(SIGNED_COLOURS, labels, f"{caption}, in the units of the mesh")
+    sheet.colour_bar(labels, f"{caption}, in the units of the mesh")
     return sheet
 
 

@@ -8,10 +8,12 @@ from math import inf
 from pathlib import Path
 from typing import Any, NamedTuple
 
+from meshlab_spectral import _core
 from meshlab_spectral.errors import OptionError
 from meshlab_spectral.files.recipe import load_recipe
 from meshlab_spectral.filters.option_types import AnyOptions, Options
 from meshlab_spectral.filters.options import DenoiseOptions, FilterOptions
+from meshlab_spectral.filters.tables import TABLES
 
 # Sizes of the equalizer's sliders in mean edges, from coarse to fine, as in MeshLab.
 EQUALIZER_EDGES = (96, 48, 24, 12, 6, 3)
@@ -37,59 +39,17 @@ class Preset(NamedTuple):
     options: Mapping[str, Any]
 
 
-def _low_pass(purpose: str, **options: Any) -> Preset:
-    return Preset(FilterOptions, purpose, {"filter_type": "low-pass", **options})
-
-
-def _band(purpose: str, kind: str, size: str, gain: float, **options: Any) -> Preset:
-    passed = {"feature_size": size, "stop_gain": 1.0, "pass_gain": gain}
-    return Preset(FilterOptions, purpose, {"filter_type": kind, **passed, **options})
-
-
-def _equalizer(purpose: str, *gains: float) -> Preset:
+def _preset(of: str, purpose: str, options: dict[str, Any]) -> Preset:
+    for table in TABLES.values():
+        if of == table.FILTER:
+            return Preset(table, purpose, options)
+    # Of the equalizer, which is a transfer function here.
+    gains = [options[f"gain_{edges // EQUALIZER_EDGES[-1]}x"] for edges in EQUALIZER_EDGES]
     points = equalizer_points(gains)
     return Preset(FilterOptions, purpose, {"filter_type": "custom", "transfer_function": points})
 
 
-def _denoise(purpose: str, **options: Any) -> Preset:
-    return Preset(DenoiseOptions, purpose, options)
-
-
-PRESETS = {
-    # The default size: about the finest waves that the mesh can represent.
-    "smooth": _low_pass("the finest waves go", feature_size="auto"),
-    "remove-details": _low_pass("details below 5 % go", feature_size="5%"),
-    "extract-details": _low_pass(
-        "what remove-details takes away", feature_size="5%", result="details"
-    ),
-    "sharpen": _band("details below 3 % doubled", "high-pass", "3%", 2.0),
-    "enhance": _band("details of about 8 % raised", "band-pass", "8%", 2.5),
-    "caricature": _band(
-        "large features of about 25 % doubled", "band-pass", "25%", 2.0, band_width=1.5
-    ),
-    "print": _low_pass(
-        "smooth for a printer, the volume kept", feature_size="auto", preserve_volume=True
-    ),
-    "terrain": _low_pass(
-        "smooth ground, its border fixed: tiles still fit", feature_size="auto", boundary="fixed"
-    ),
-    "clear": _equalizer(
-        "an equalizer's curve: details of 6 to 24 edges raised", 1, 1, 1.4, 1.6, 1.4, 1
-    ),
-    "relief": _equalizer(
-        "an equalizer's curve: details of 24 to 96 edges raised", 1.4, 1.8, 1.6, 1.2, 1, 1
-    ),
-    "worn": _equalizer("an equalizer's curve: the finer, the flatter", 1, 1, 0.8, 0.5, 0.2, 0),
-    "scan": _denoise("noise as measured", strength=1.0),
-    "museum": _denoise(
-        "rather some noise left than a detail lost: 0.7 of it, at most an edge",
-        strength=0.7,
-        max_displacement="1e",
-    ),
-    "teeth": _denoise(
-        "borders fixed, as margins; at most half an edge", boundary="fixed", max_displacement="0.5e"
-    ),
-}
+PRESETS = {name: _preset(of, purpose, given) for name, of, purpose, given in _core.presets()}
 _NAME = re.compile(r"[\w-]+")
 
 
