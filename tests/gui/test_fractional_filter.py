@@ -360,10 +360,9 @@ def test_a_preset_fills_the_fields_and_is_previewed_once(
     dialog.preview(True)
     logged = len(meshlab.log())
     dialog.start_from(name)
-    log = dialog.wait_for_result(logged)
+    dialog.wait_for_result(logged)
     call = dialog.pymeshlab_call()
-    assert log == meshlab.log()[logged:]
-    assert log.count("Applied filter: ") == 1
+    assert meshlab.log()[logged:].count("Applied filter: ") == 1
     ms = load(bunny)
     percent = {"%": 1, "e": 100 * mean_edge(ms) / diagonal(vertices(ms))}
     (contract,) = (one for one in filters() if one["python_name"] == of)

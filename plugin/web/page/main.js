@@ -16,12 +16,21 @@ const at = (id) => document.getElementById(id);
 let tables = [], mesh = null, result = null, stop = null, timer = 0, view = null;
 
 at('served').hidden = true;
+/** Goes on without pictures. */
+function hideView(why) {
+  view = null;
+  at('hint').textContent = why;
+  at('hint').hidden = false;
+  at('canvas').hidden = at('legend').hidden = true;
+}
+
 try {
   view = new View(at('canvas'));
 } catch (error) {
-  at('hint').textContent = error.message;
-  at('canvas').hidden = true;
+  hideView(error.message);
 }
+// As of a mesh that a slow graphics processor, or none, draws for too long.
+at('canvas').addEventListener('webglcontextlost', () => hideView('The browser has stopped drawing 3D pictures; everything else works.'));
 
 function say(text, kind = '') {
   const line = document.createElement('p');
@@ -108,7 +117,7 @@ function show(options) {
   }
   for (const warning of result.warnings) if (!result.text.includes(warning)) say(warning, 'warning');
   at('same').textContent = sameRun(result.filter, options, mesh.name, mesh.sizes);
-  view?.move(1, result.vertices ?? mesh.V);
+  view?.move(result.vertices ?? mesh.V, 1);
   const colors = at('colors').options;
   colors.namedItem('values').textContent = result.filter.pythonName === DENOISE ? 'height of the noise' : 'heights';
   colors.namedItem('values').disabled = !result.values;
@@ -120,7 +129,7 @@ function show(options) {
 /** Colours both sides, and says what the colours mean. */
 function color() {
   const kind = at('colors').value;
-  at('legend').hidden = kind === 'none' || !result;
+  at('legend').hidden = kind === 'none' || !result || !view;
   if (kind === 'none' || !result) return view?.color(null);
   let values = result.values;
   if (kind === 'moved') {

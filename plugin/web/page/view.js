@@ -49,7 +49,7 @@ export class View {
     this.shift = [0, 0];
     this.palette = 'moved';
     this.listen();
-    new ResizeObserver(() => this.draw()).observe(canvas);
+    new ResizeObserver(() => this.drawSoon()).observe(canvas);
   }
 
   /** Shows a mesh on both sides, from the front. */
@@ -67,16 +67,18 @@ export class View {
     this.zoom = 1;
     this.shift = [0, 0];
     this.turn = [0.9, 0.15, -0.41, 0, 0.94, 0.34, 0.44, -0.31, 0.85];
-    for (const side of [0, 1]) this.move(side, V);
+    this.move(V, 0, 1);
     this.color(null);
   }
 
-  move(side, V) {
-    const {gl} = this;
-    const positions = Float32Array.from(V, (x, i) => (x - this.middle[i % 3]) / this.size);
-    gl.bindBuffer(gl.ARRAY_BUFFER, this.sides[side].positions);
-    gl.bufferData(gl.ARRAY_BUFFER, positions, gl.STATIC_DRAW);
-    this.draw();
+  move(V, ...sides) {
+    const {gl} = this, positions = new Float32Array(V.length);
+    for (let i = 0; i < V.length; i++) positions[i] = (V[i] - this.middle[i % 3]) / this.size;
+    for (const side of sides) {
+      gl.bindBuffer(gl.ARRAY_BUFFER, this.sides[side].positions);
+      gl.bufferData(gl.ARRAY_BUFFER, positions, gl.STATIC_DRAW);
+    }
+    this.drawSoon();
   }
 
   /** Colours both sides by values from -1 to 1; null: none. */
@@ -88,7 +90,15 @@ export class View {
       gl.bindBuffer(gl.ARRAY_BUFFER, buffer);
       gl.bufferData(gl.ARRAY_BUFFER, values ?? new Float32Array(0), gl.STATIC_DRAW);
     }
-    this.draw();
+    this.drawSoon();
+  }
+
+  /** Draws once for all changes of a frame: large meshes take a processor seconds. */
+  drawSoon() {
+    this.frame ??= requestAnimationFrame(() => {
+      this.frame = null;
+      this.draw();
+    });
   }
 
   draw() {
@@ -123,18 +133,18 @@ export class View {
   rotate(x, y) {
     const [cx, sx, cy, sy] = [Math.cos(x), Math.sin(x), Math.cos(y), Math.sin(y)];
     this.turn = multiplied([1, 0, 0, 0, cy, sy, 0, -sy, cy], multiplied([cx, 0, -sx, 0, 1, 0, sx, 0, cx], this.turn));
-    this.draw();
+    this.drawSoon();
   }
 
   pan(x, y) {
     this.shift = [this.shift[0] + x, this.shift[1] + y];
-    this.draw();
+    this.drawSoon();
   }
 
   enlarge(factor) {
     this.zoom = Math.min(50, Math.max(0.2, this.zoom * factor));
     this.shift = this.shift.map((x) => x * factor);
-    this.draw();
+    this.drawSoon();
   }
 
   listen() {

@@ -27,11 +27,12 @@ function headerOf(bytes) {
 /** Reads numbers one after the other, and knows where each is. */
 function binaryReader(bytes, at, littleEndian) {
   const view = new DataView(bytes.buffer, bytes.byteOffset, bytes.byteLength);
+  const gets = Object.fromEntries(Object.entries(kReads).map(([type, name]) => [type, view[`get${name}`].bind(view)]));
   return {
     next(type) {
       this.place = at;
       at += kSizes[type];
-      return view[`get${kReads[type]}`](this.place, littleEndian);
+      return gets[type](this.place, littleEndian);
     },
   };
 }
@@ -66,7 +67,8 @@ function readElements(header, reader, mesh) {
           }
           continue;
         }
-        const list = Array.from({length: reader.next(sizeType)}, () => reader.next(type));
+        const list = [];
+        for (let left = reader.next(sizeType); left > 0; left--) list.push(reader.next(type));
         if (!isFace || !/^vertex_ind(ex|ices)$/.test(property)) continue;
         if (name === 'face') addPolygon(list, mesh.F);
         else addStrips(list, mesh.F);
