@@ -47,6 +47,21 @@ def write_scan(path: Path, V: NDArray[np.float64], F: NDArray[np.int64]) -> None
     PlyData(elements).write(path)
 
 
+def write_huge(path: Path) -> None:
+    """A grid of five million vertices: more than fits into WebAssembly."""
+    n = 2237
+    face = np.zeros(2 * (n - 1) ** 2, [("size", "u1"), ("corners", "<i4", 3)])
+    first = (n * np.arange(n - 1)[:, None] + np.arange(n - 1)).ravel()
+    face["size"] = 3
+    face["corners"][::2] = first[:, None] + [0, n, 1]
+    face["corners"][1::2] = first[:, None] + [1, n, n + 1]
+    header = f"ply\nformat binary_little_endian 1.0\nelement vertex {n * n}\n"
+    header += "".join(f"property float {axis}\n" for axis in "xyz")
+    header += f"element face {len(face)}\nproperty list uchar int vertex_indices\nend_header\n"
+    V = np.column_stack([*np.divmod(np.arange(n * n), n), np.arange(n * n) % 7]).astype("<f4")
+    path.write_bytes(header.encode() + V.tobytes() + face.tobytes())
+
+
 def write_segmentation(path: Path) -> None:
     x, y, z = np.mgrid[-1:1:50j, -1:1:50j, -1:1:50j]
     inside = (np.sqrt((np.sqrt(x**2 + y**2) - 0.6) ** 2 + z**2) < 0.27).astype("f4")
@@ -86,6 +101,7 @@ def test_what_the_page_saves_is_what_python_gives(browser: str, tmp_path: Path) 
     write_textured(meshes / "textured.glb", V, F)
     write_part(meshes / "part.3mf", V, F)
     trimesh.creation.annulus(1, 2, 1, sections=90).export(meshes / "cad.stl")
+    write_huge(meshes / "huge.ply")
     (meshes / "broken.ply").write_bytes((meshes / "scan.ply").read_bytes()[:90000])
 
     target = BUILD / "pictures" / browser
