@@ -7,6 +7,7 @@ along a seam where the format has texture coordinates. No reader here comes from
 from __future__ import annotations
 
 import json
+import shutil
 import struct
 import zipfile
 from collections.abc import Callable
@@ -426,8 +427,10 @@ def write_usd(path: Path) -> None:
     """Write a text, or a package of it with its image; the mesh is left-handed."""
     from pxr import Gf, Sdf, Usd, UsdGeom, UsdShade, UsdUtils, Vt
 
-    scene = path.with_suffix(".usda")
-    (path.parent / SKIN).write_bytes(IMAGE)
+    folder = path.parent / "packed" if path.suffix == ".usdz" else path.parent
+    folder.mkdir(exist_ok=True)
+    scene = folder / path.with_suffix(".usda").name
+    (folder / SKIN).write_bytes(IMAGE)
     stage = Usd.Stage.CreateNew(str(scene))
     stage.SetMetadata("comment", "made by hand")
     UsdGeom.SetStageMetersPerUnit(stage, 0.0254)
@@ -459,8 +462,7 @@ def write_usd(path: Path) -> None:
     stage.GetRootLayer().Save()
     if path != scene:
         UsdUtils.CreateNewUsdzPackage(str(scene), str(path))
-        scene.unlink()
-        (path.parent / SKIN).unlink()
+        shutil.rmtree(folder)
 
 
 def read_usd(path: Path) -> Seen:

@@ -80,8 +80,8 @@ def run(words: list[str], folder: Path, trace: Path | None = None) -> Done:
         try:
             family = [psutil.Process(process.pid)]
             family += family[0].children(recursive=True)
-            memory = max(memory, *(one.memory_info().rss for one in family))
-        except psutil.Error:
+            memory = max(memory, *(_peak_of(one.pid) for one in family))
+        except (psutil.Error, OSError):
             pass
         time.sleep(0.05)
     process.kill()
@@ -89,6 +89,12 @@ def run(words: list[str], folder: Path, trace: Path | None = None) -> Done:
     after = resource.getrusage(resource.RUSAGE_CHILDREN)
     seconds = sum(getattr(after, k) - getattr(before, k) for k in ("ru_utime", "ru_stime"))
     return Done(process.returncode, errors, memory, seconds)
+
+
+def _peak_of(process: int) -> int:
+    """The most memory that a process has had, which samples of what it has now would miss."""
+    status = Path(f"/proc/{process}/status").read_text()
+    return 1024 * int(match[1]) if (match := re.search(r"VmHWM:\s*(\d+)", status)) else 0
 
 
 def opened(trace: Path, folder: Path) -> Iterator[Path]:

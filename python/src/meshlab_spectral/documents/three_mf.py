@@ -33,6 +33,7 @@ _DECRYPT = "save it without encryption"
 # What a package of the Open Packaging Conventions may have; zipfile unpacks others in one piece.
 _PACKED = (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED)
 _TAG_BYTES = 250  # of what ElementTree makes of a tag, at least
+_ROW_BYTES = 48  # of a vertex or triangle: three numbers, and their places
 _MOST_PLACEMENTS = 1000  # of an object: those of nested components multiply
 _TAKEN = [("vertex", ("x", "y", "z")), ("triangle", ("v1", "v2", "v3"))]
 _LEVEL = 1  # of zlib: takes a third of the default's time, for files a quarter larger
@@ -124,6 +125,7 @@ class _Model:
         if b"<!DOCTYPE" in data or b"\0" in data:  # UTF-16 has null bytes
             what = f"has a document type or UTF-16 in {called}"
             raise unsupported(path, what, "save it in UTF-8")
+        budget.take(_ROW_BYTES * data.count(b"<"), f"vertices and triangles of {called}")
         found, rest = xml_elements(data, _TAKEN)
         budget.take(_TAG_BYTES * rest.count(b"<"), f"elements of {called}")
         vertices, triangles = (
