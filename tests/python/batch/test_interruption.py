@@ -108,43 +108,30 @@ def test_an_interrupted_batch_ends_soon_with_130_and_resumes(
         assert_resumes(meshes, tmp_path / "out", undisturbed)
 
 
-def test_an_interrupted_batch_leaves_no_copies_of_files_at_urls(
-    meshes: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGKILL])
+def test_copies_of_files_at_urls_go_with_the_interrupted_batch_or_the_next_one(
+    number: signal.Signals, meshes: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     temporary = tmp_path / "tmp"
     temporary.mkdir()
     monkeypatch.setenv("TMPDIR", str(temporary))
     # A chain of file systems is a URL to fsspec, not a path.
-    urls = [f"filecache::{path.as_uri()}" for path in meshes.iterdir()]
-    process = start_batch(*urls, "--output", tmp_path / "out", *OPTIONS)
-    try:
-        wait_until(lambda: bool(list(temporary.rglob("*.ply"))))
-        process.send_signal(signal.SIGINT)
-        process.communicate(timeout=20)
-    finally:
-        process.kill()
-        process.communicate()
-    assert process.returncode == 130
-    assert not list(temporary.rglob("*.ply"))
-    assert not list(temporary.rglob("*meshlab-spectral*"))
-
-
-def test_copies_left_by_a_killed_batch_are_removed_by_the_next_one(
-    meshes: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    temporary = tmp_path / "tmp"
-    temporary.mkdir()
-    monkeypatch.setenv("TMPDIR", str(temporary))
-    urls = [f"filecache::{path.as_uri()}" for path in sorted(meshes.iterdir())[:2]]
+    urls = [f"filecache::{path.as_uri()}" for path in sorted(meshes.iterdir())[:4]]
     batch = [*urls, "--output", tmp_path / "out", *OPTIONS]
     process = start_batch(*batch)
     try:
         wait_until(lambda: bool(list(temporary.rglob("*.ply"))))
+        process.send_signal(number)
+        process.communicate(timeout=20)
     finally:
         process.kill()
         process.communicate()
-    assert list(temporary.rglob("*.ply"))
-    assert command("batch", *batch, "--resume").returncode == 0
+    if number == signal.SIGKILL:
+        assert list(temporary.rglob("*.ply"))
+        assert command("batch", *batch, "--resume").returncode == 0
+    else:
+        assert process.returncode == 130
+        assert not list(temporary.rglob("*meshlab-spectral*"))
     assert not list(temporary.rglob("*.ply"))
 
 
