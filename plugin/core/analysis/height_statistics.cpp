@@ -92,11 +92,13 @@ void measureCore(const Eigen::VectorXd& h, const Eigen::VectorXd& areas,
     const double slope = (centred * core.array()).sum() / centred.square().sum();
     const double top = core.mean() - slope * ratio.mean(), bottom = top + slope;
     double peaks = 0.0, valleys = 0.0, above = 0.0, below = 0.0;
+    constexpr double kRoundOff = 1e-9;  // the bars of a grating are of one height
+    const double least = kRoundOff * texture.Sz;
     for (const Index i : order) {
-        if (h[i] > top) {
+        if (h[i] > top + least) {
             above += areas[i];
             peaks += areas[i] * (h[i] - top);
-        } else if (h[i] < bottom) {
+        } else if (h[i] < bottom - least) {
             below += areas[i];
             valleys += areas[i] * (bottom - h[i]);
         }

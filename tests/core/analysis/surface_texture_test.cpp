@@ -365,36 +365,6 @@ TEST(SurfaceTexture, RefusesWhatHasTwoSidesOrTwoUnits) {
         }
 }
 
-TEST(SurfaceTexture, OfARampHasACoreAndNothingElse) {
-    // A saw tooth: every height is as frequent.
-    const Mesh mesh = plane(4.0, 400, [](double x, double) {
-        return 0.01 * (2.0 * std::abs(std::fmod(x, 1.0) - 0.5) - 0.5);
-    });
-    TextureOptions options = above(FormKind::Plane, 0.0);
-    const SurfaceTexture texture = measured(mesh, options);
-    EXPECT_NEAR(texture.Sk, 0.01, 1e-4);
-    EXPECT_NEAR(texture.Spk, 0.0, 2e-4);
-    EXPECT_NEAR(texture.Svk, 0.0, 2e-4);
-    EXPECT_NEAR(texture.Smr1, 0.0, 0.02);
-    EXPECT_NEAR(texture.Smr2, 1.0, 0.02);
-    EXPECT_NEAR(texture.Sa, 0.0025, 2.5e-5);
-    EXPECT_NEAR(texture.Sku, 1.8, 0.018);
-}
-
-TEST(SurfaceTexture, OfAGratingHasTheShareOfItsBars) {
-    // Bars of three tenths, each level an exact share.
-    const Mesh mesh = plane(4.0, 400, [](double x, double) {
-        const double at = std::fmod(x + 1e-9, 1.0);
-        return at > 0.345 && at < 0.655 ? 0.01 : 0.0;
-    });
-    const SurfaceTexture texture = measured(mesh, above(FormKind::Plane, 0.0));
-    EXPECT_NEAR(texture.Sz, 0.01, 1e-6);
-    EXPECT_NEAR(texture.Sq, 0.01 * std::sqrt(0.31 * 0.69), 1e-5);
-    EXPECT_NEAR(texture.Sk, 0.0, 1e-9);     // the flattest 40 % are the floor
-    EXPECT_NEAR(texture.Smr1, 0.31, 1e-6);  // 31 of 100 columns
-    EXPECT_NEAR(texture.Spk, 0.02, 2e-4);
-}
-
 TEST(SurfaceTexture, ScalesWithTheMeshAndTurnsWithIt) {
     Mesh mesh = testing::withNoise(torus(1.0, 0.4, 90, 50), 0.003, 5);
     const SurfaceTexture one = measured(mesh, withWaviness(0.4));
