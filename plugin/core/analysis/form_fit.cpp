@@ -105,12 +105,14 @@ std::pair<Eigen::Matrix<double, 6, 6>, Change> normalEquations(const FittedShape
     return {A, b};
 }
 
-FittedShape refined(FittedShape shape, const Vertices& X, const Eigen::VectorXd& weights) {
-    constexpr int kMaxSteps = 100;
+constexpr int kMaxSteps = 100;
+
+FittedShape refined(FittedShape shape, const Vertices& X, const Eigen::VectorXd& weights,
+                    int maxSteps = kMaxSteps) {
     constexpr double kSmallest = 1e-14;  // relative step
     const double size = X.rowwise().norm().maxCoeff();
     double error = squaredError(shape, X, weights), damping = 1e-4;
-    for (int step = 0; step < kMaxSteps && damping < 1e8; ++step) {
+    for (int step = 0; step < maxSteps && damping < 1e8; ++step) {
         const Eigen::Matrix3d frame = frameOf(shape);
         auto [A, b] = normalEquations(shape, frame, size, X, weights);
         A.diagonal() += Change::Constant(damping * weights.sum());
@@ -137,18 +139,20 @@ FittedShape fittedSphere(const Vertices& X, const Eigen::VectorXd& weights) {
 FittedShape fittedCylinder(const Vertices& X, const Vertices& N, const Eigen::VectorXd& weights) {
     const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> moments(N.transpose() *
                                                                  weights.asDiagonal() * N);
+    constexpr int kTrials =
+        10;  // steps that tell directions apart; wrong ones would go on for long
     FittedShape best{ShapeKind::Cylinder, Row::Zero(), Row::Zero()};
     double least = std::numeric_limits<double>::infinity();
     for (int k = 0; k < 3; ++k) {
         const Row axis = moments.eigenvectors().col(k).transpose();
         const FittedShape one =
-            refined(algebraicFit(ShapeKind::Cylinder, axis, X, weights), X, weights);
+            refined(algebraicFit(ShapeKind::Cylinder, axis, X, weights), X, weights, kTrials);
         const double error = squaredError(one, X, weights);
         if (!(error < least)) continue;
         best = one;
         least = error;
     }
-    return best;
+    return refined(best, X, weights);
 }
 
 /// Whether a plane is at least as near to the points: then they have no radius.
