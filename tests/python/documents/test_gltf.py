@@ -375,7 +375,7 @@ def test_draco_is_decoded_and_told(is_required: bool, tmp_path: Path) -> None:
     asset = cube()
     primitive = asset.tree["meshes"][0]["primitives"][0]
     labels = np.arange(8, dtype="<f4")
-    primitive["attributes"]["_LABEL"] = asset.accessor(labels)
+    primitive["attributes"]["_LABEL"] = label = asset.accessor(labels, min=[0], max=[8])
     if is_required:
         draco = pytest.importorskip("DracoPy")
         packed = draco.encode(
@@ -409,6 +409,7 @@ def test_draco_is_decoded_and_told(is_required: bool, tmp_path: Path) -> None:
     tree, _ = opened(target)
     assert tree["extensionsUsed"] == ["KHR_materials_unlit"]
     assert "extensionsRequired" not in tree
+    assert tree["accessors"][label]["max"] == [7 if is_required else 8]  # of what was decoded
     assert "extensions" not in tree["meshes"][0]["primitives"][0]
     np.testing.assert_allclose(read(target).parts[0].vertices, moved, atol=1e-6)
     written = tree["meshes"][0]["primitives"][0]["attributes"]["_LABEL"]

@@ -88,8 +88,11 @@ class Asset:
         """Give an accessor without data its elements, count x width, in a new view of them."""
         accessor = self.entry("accessors", index)
         self.budget.take(8 * values.size, "its compressed geometry")
-        data = values.astype(_COMPONENTS[accessor["componentType"]]).tobytes()
-        accessor |= {"bufferView": self._new_view(data), "count": len(values)}
+        data = values.astype(_COMPONENTS[accessor["componentType"]])
+        accessor |= {"bufferView": self._new_view(data.tobytes()), "count": len(data)}
+        for bound, of in (("min", np.min), ("max", np.max)):  # what was packed with loss has others
+            if bound in accessor and len(data):
+                accessor[bound] = of(data, axis=0).tolist()
         accessor.pop("byteOffset", None)
         self._grown = {0}
 
