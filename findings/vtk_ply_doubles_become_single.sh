@@ -1,7 +1,7 @@
 #!/bin/sh
 # vtk 9.7.2 by pyvista 0.49.1: coordinates that a PLY has as double are read in single precision.
 #
-# vtkPLYReader makes floats of them, in text and in binary, without a message; vtkOBJReader keeps the doubles of
+# vtkPLYReader makes floats of them, without a message; vtkOBJReader keeps the doubles of
 # the same mesh. Of a scan in UTM coordinates, in metres, with a northing of five million, a quarter of a metre
 # is lost. trimesh and meshio keep doubles. Subtract an origin first, or read by one of them.
 #
