@@ -217,7 +217,7 @@ FilterOutput run(const FilterInput& input, const MeshLengths& mesh, const Values
             "the fitted shape. A smaller |waviness|, or a larger |crease_angle| such as 180, "
             "measures "
             "more");
-    constexpr double kSteep = 0.7;  // Sq is .5 % off at .4, and 3 % at 1
+    constexpr double kSteep = 0.7;  // Sq is .5 % off at .4, and 3.5 % at 1
     if (!isShape(options.form) && texture.Sdq > kSteep)
         output.warnings.push_back(
             "slopes of the texture are steep, Sdq " + shortText(texture.Sdq) +
