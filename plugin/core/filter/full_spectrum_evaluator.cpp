@@ -27,13 +27,6 @@ Evaluation joined(std::vector<FullSpectrumResult> results) {
     return evaluation;
 }
 
-/// Whether there are components so small that no error over the surface tells theirs.
-bool hasDebris(const ConstantModes& components) {
-    constexpr double kDebris = 1e-3;  // of the mass; what the errors of automatic steps leave out
-    return components.count() > 1 &&
-           components.masses().minCoeff() < kDebris * components.masses().sum();
-}
-
 }  // namespace
 
 Evaluation evaluateInKrylovSpaces(const Laplacian& laplacian, const ShiftedLdlt& ldlt,
@@ -57,12 +50,11 @@ double FullSpectrumEvaluator::poleFor(const Laplacian& laplacian, double alpha) 
     return place->second;
 }
 
-FullSpectrumOptions FullSpectrumEvaluator::optionsFor(double accuracy) {
+FullSpectrumOptions FullSpectrumEvaluator::optionsFor(double accuracy) const {
     FullSpectrumOptions options;
     options.accuracy = accuracy;
     options.atEveryVertex = atEveryVertex_;
     options.samples = F_.samples();
-    options.spare = &spare_;
     return options;
 }
 
@@ -91,23 +83,15 @@ Evaluation FullSpectrumEvaluator::evaluate(const Laplacian& laplacian, const Sig
             return *std::move(evaluation);
         throw;
     }
-    return evaluateFactorized(laplacian, gains, X, options, progress);
+    return evaluateInKrylovSpaces(laplacian, ldlt_, gains, X, options, progress);
 }
 
 Evaluation FullSpectrumEvaluator::evaluateAgain(const Laplacian& laplacian, const Signals& X,
                                                 const std::vector<double>& alphas, double accuracy,
                                                 const Progress& progress) {
     if (ldlt_.factorizations() == 0) return evaluate(laplacian, X, alphas, accuracy, progress);
-    return evaluateFactorized(laplacian, gainsFor(alphas), X, optionsFor(accuracy), progress);
-}
-
-Evaluation FullSpectrumEvaluator::evaluateFactorized(const Laplacian& laplacian,
-                                                     const std::vector<Gain>& gains,
-                                                     const Signals& X, FullSpectrumOptions options,
-                                                     const Progress& progress) {
-    // A series of products is as accurate for debris; Lanczos spaces do not see it.
-    options.atEveryVertex = atEveryVertex_ || hasDebris(laplacian.constants);
-    return evaluateInKrylovSpaces(laplacian, ldlt_, gains, X, std::move(options), progress);
+    return evaluateInKrylovSpaces(laplacian, ldlt_, gainsFor(alphas), X, optionsFor(accuracy),
+                                  progress);
 }
 
 std::optional<Evaluation> FullSpectrumEvaluator::evaluateByProducts(const Laplacian& laplacian,
@@ -117,8 +101,7 @@ std::optional<Evaluation> FullSpectrumEvaluator::evaluateByProducts(const Laplac
                                                                     const Progress& progress) {
     const bool isRequired = solver_ == Solver::Products || lacksMemory_;
     // With a symbolic analysis at hand, factorizations cost less.
-    const bool isWorthTrying =
-        solver_ == Solver::Cheapest && !atEveryVertex_ && ldlt_.factorizations() == 0;
+    const bool isWorthTrying = solver_ == Solver::Cheapest && ldlt_.factorizations() == 0;
     if (!isRequired && !isWorthTrying) return {};
     if (!isRequired) options.affordable = affordableProducts(laplacian.D.size(), products_ == 0);
     std::vector<FullSpectrumResult> results =

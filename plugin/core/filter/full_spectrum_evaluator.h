@@ -52,11 +52,8 @@ class FullSpectrumEvaluator : public Evaluator {
                              const Progress& progress);
 
   private:
-    FullSpectrumOptions optionsFor(double accuracy);
+    FullSpectrumOptions optionsFor(double accuracy) const;
     std::vector<Gain> gainsFor(const std::vector<double>& alphas) const;
-    Evaluation evaluateFactorized(const Laplacian& laplacian, const std::vector<Gain>& gains,
-                                  const Signals& X, FullSpectrumOptions options,
-                                  const Progress& progress);
     /// Evaluates by products; empty if a factorization is chosen or expected to be cheaper.
     std::optional<Evaluation> evaluateByProducts(const Laplacian& laplacian,
                                                  const std::vector<Gain>& gains, const Signals& X,
@@ -69,8 +66,7 @@ class FullSpectrumEvaluator : public Evaluator {
     bool atEveryVertex_;
     Solver solver_;
     std::optional<SpectrumRange> spectrum_;  // of the first Laplacian
-    SpareVectors spare_;
-    std::map<double, double> poles_;  // by power, for those requested so far
+    std::map<double, double> poles_;         // by power, for those requested so far
 };
 
 }  // namespace spectral

@@ -166,15 +166,15 @@ class Approximation {
     double largest_ = 0.0;
 };
 
-/// applyFullSpectrum for more than kMaxSignals signals, in blocks.
+/// applyFullSpectrum for more than `most` signals, in blocks.
 std::vector<FullSpectrumResult> applyInBlocks(const Laplacian& laplacian, const KrylovOperator& S,
                                               const std::vector<Gain>& gains, const Signals& X,
-                                              const FullSpectrumOptions& options,
+                                              const FullSpectrumOptions& options, Index most,
                                               const Progress& progress) {
     std::vector<FullSpectrumResult> results(gains.size(), {X, 0.0, 0, true});
     const auto all = static_cast<double>(X.cols());
-    for (Index first = 0; first < X.cols(); first += kMaxSignals) {
-        const Index count = std::min<Index>(kMaxSignals, X.cols() - first), end = first + count;
+    for (Index first = 0; first < X.cols(); first += most) {
+        const Index count = std::min(most, X.cols() - first), end = first + count;
         const std::vector<FullSpectrumResult> block = applyFullSpectrum(
             laplacian, S, gains, X.middleCols(first, count), options,
             progress.part(static_cast<double>(first) / all, static_cast<double>(end) / all));
@@ -196,20 +196,20 @@ std::vector<FullSpectrumResult> applyFullSpectrum(const Laplacian& laplacian,
                                                   const std::vector<Gain>& gains, const Signals& X,
                                                   const FullSpectrumOptions& options,
                                                   const Progress& progress) {
-    if (X.cols() > kMaxSignals) return applyInBlocks(laplacian, S, gains, X, options, progress);
+    const auto inBlocks = [&](Index most) {
+        return applyInBlocks(laplacian, S, gains, X, options, most, progress);
+    };
+    if (X.cols() > kMaxSignalsOfSeries) return inBlocks(kMaxSignalsOfSeries);
     const Eigen::VectorXd& D = laplacian.D;
     const ConstantModes& constants = laplacian.constants;
     const Eigen::VectorXd omega = sampleFrequencies(S, options.samples);
-    // Over the surface alone, a Lanczos space takes as few solves, and so few that it costs
-    // nothing.
-    if (S.isProduct() || options.atEveryVertex) {
-        auto results = applySeries(laplacian, S, gains, X, omega, options, progress);
-        if (!results.empty() || S.isProduct()) return results;
-    }
+    auto series = applySeries(laplacian, S, gains, X, omega, options, progress);
+    if (!series.empty() || S.isProduct()) return series;
+    if (X.cols() > kMaxSignals) return inBlocks(kMaxSignals);
     double orthogonal = KrylovSpaces::kOrthogonal;
     if (options.atEveryVertex)  // at vertices of small mass, basis vectors have large entries
         orthogonal = std::min(orthogonal, options.accuracy * std::sqrt(D.minCoeff() / D.sum()));
-    KrylovSpaces spaces(S, laplacian, X, orthogonal, true, options.spare);
+    KrylovSpaces spaces(S, laplacian, X, orthogonal);
     if (!(spaces.largestEntry() > 0.0)) return {gains.size(), {X, 0.0, 0, true}};
     std::vector<FullSpectrumResult> results(gains.size());
     std::vector<Approximation> approximations;

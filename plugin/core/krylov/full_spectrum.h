@@ -27,8 +27,6 @@ struct FullSpectrumOptions {
     /// bound uses the smallest mass: a gross overestimate where parts have shrunk to nothing.
     std::optional<double> roundOffAtVertices;
 
-    SpareVectors* spare = nullptr;  ///< Memory for the basis (krylov_spaces.h).
-
     /// Extra frequencies at which to sample the gains, besides eighths of octaves; the gains must
     /// vary little in between.
     std::vector<double> samples;
@@ -42,8 +40,8 @@ struct FullSpectrumResult {
     Eigen::MatrixXd Y;  ///< n x c, the filtered signals.
 
     /// Estimated error of Y, relative to X without its constants: the larger of |dY|_D / |X|_D and
-    /// max|dY| / max|X|, over all columns together, or over each block
-    /// of kMaxSignals if there are more.
+    /// max|dY| / max|X|, over all columns together, or over each block of those evaluated at once
+    /// (rows.h) if there are more.
     double errorEstimate = 0.0;
     int dimension = 0;  ///< Krylov dimension reached: applications of S per column.
 
@@ -55,8 +53,8 @@ struct FullSpectrumResult {
 /// Y = F(sqrt(A)) X over the whole spectrum for several gains F, without computing eigenvectors.
 ///
 /// Equals the result with all n harmonics, Y = Phi F(Lambda^1/2) Phi^T D X (Kovnatsky et al. 2012,
-/// Eq. 6). Computed by a Chebyshev series in S (series_evaluation.h), products with A always; by a
-/// Lanczos method with solves (krylov_spaces.h) if the series would take too many of them.
+/// Eq. 6). Computed by a Chebyshev series in S (series_evaluation.h); by a Lanczos method
+/// (krylov_spaces.h) if F jumps, or where there are many gains, which share one space.
 ///
 /// The stopping rule of the latter is a posteriori: over the surface by a bound from the spectral
 /// measure (KrylovSpaces::squaredErrorBound), at every vertex from the differences between

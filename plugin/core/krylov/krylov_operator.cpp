@@ -84,9 +84,12 @@ Eigen::ArrayXd ShiftInvert::apply(const Eigen::VectorXd& D, const double* Q, int
             for (Index k = i * columns; k < (i + 1) * columns; ++k) Y[k] = D[i] * Q[k];
     });
     ldlt_.solveOrdered(Y, columns);
-    return withColumns(columns, [&](auto count) {
+    const auto products = [&](auto count) {
         return Eigen::ArrayXd(innerProducts<count>(D, Q, Y).transpose());
-    });
+    };
+    return columns == kMaxSignalsOfSeries
+               ? products(std::integral_constant<int, kMaxSignalsOfSeries>())
+               : withColumns(columns, products);
 }
 
 double ShiftInvert::lambda(double theta) const {

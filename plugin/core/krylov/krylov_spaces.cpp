@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
-#include <iterator>
 #include <limits>
 #include <utility>
 
@@ -86,7 +85,7 @@ Moments<Columns> momentsOf(const Eigen::VectorXd& D, const Eigen::VectorXi& labe
 }  // namespace
 
 KrylovSpaces::KrylovSpaces(const KrylovOperator& S, const Laplacian& laplacian, const Signals& X,
-                           double orthogonal, bool isKept, SpareVectors* spare)
+                           double orthogonal, bool isKept)
     : S_(S),
       constants_(laplacian.constants),
       orthogonal_(orthogonal),
@@ -94,7 +93,6 @@ KrylovSpaces::KrylovSpaces(const KrylovOperator& S, const Laplacian& laplacian, 
       D_(laplacian.D.size()),
       label_(laplacian.D.size()),
       isKept_(isKept),
-      spare_(spare),
       alpha_(X.cols()),
       beta_(X.cols()),
       ritz_(X.cols()),
@@ -114,10 +112,6 @@ KrylovSpaces::KrylovSpaces(const KrylovOperator& S, const Laplacian& laplacian, 
         }
     });
     withColumns(columns_, [&](auto columns) { start<columns>(X); });
-}
-
-KrylovSpaces::~KrylovSpaces() {
-    if (spare_ != nullptr) std::move(basis_.begin(), basis_.end(), std::back_inserter(*spare_));
 }
 
 bool KrylovSpaces::extend() {
@@ -169,12 +163,7 @@ void KrylovSpaces::start(const Signals& X) {
 /// Computes the rows of the newest vector and appends it to the basis.
 template <int Columns, class MakeRow>
 void KrylovSpaces::append(const MakeRow& row) {
-    Eigen::VectorXd vector;
-    if (isKept_ && spare_ != nullptr && !spare_->empty()) {
-        vector = std::move(spare_->back());
-        spare_->pop_back();
-    }
-    if (isKept_) vector.resize(D_.size() * Columns);
+    Eigen::VectorXd vector(isKept_ ? D_.size() * Columns : 0);
     parallelRows(D_.size(), [&](Index begin, Index end) {
         for (Index i = begin; i < end; ++i) {
             const Row<Columns> values = row(i);

@@ -16,10 +16,6 @@ struct Quadrature {
     Eigen::VectorXd weight;  ///< m weights, >= 0.
 };
 
-/// Basis vectors no longer in use, to be reused by later spaces: fresh memory costs as much as the
-/// rest of a dimension.
-using SpareVectors = std::vector<Eigen::VectorXd>;
-
 /// Simultaneous Lanczos recurrences for several signals: each application of an operator S extends
 /// the Krylov spaces of all signals.
 ///
@@ -48,11 +44,8 @@ class KrylovSpaces {
     /// @param isKept  whether the basis is kept, orthogonal; quadrature needs only T, of an
     /// orthogonal
     ///                basis or not (Golub and Meurant 1994).
-    /// @param spare  pool that vectors are taken from and returned to at the end; may be null.
     KrylovSpaces(const KrylovOperator& S, const Laplacian& laplacian, const Signals& X,
-                 double orthogonal = kOrthogonal, bool isKept = true,
-                 SpareVectors* spare = nullptr);
-    ~KrylovSpaces();
+                 double orthogonal = kOrthogonal, bool isKept = true);
     KrylovSpaces(const KrylovSpaces&) = delete;
     KrylovSpaces& operator=(const KrylovSpaces&) = delete;
 
@@ -133,8 +126,7 @@ class KrylovSpaces {
     Eigen::VectorXd D_;      // in the order of S, like all that follow
     Eigen::VectorXi label_;  // components; see ConstantModes
     bool isKept_;
-    std::vector<Eigen::VectorXd> basis_;  // each n rows of columns_ values
-    SpareVectors* spare_;
+    std::vector<Eigen::VectorXd> basis_;      // each n rows of columns_ values
     Eigen::VectorXd newest_, before_, next_;  // basis vectors followed by the scratch rows of S
     std::vector<std::vector<double>> alpha_, beta_;  // diagonal and off-diagonal of T, by column
 

@@ -7,8 +7,9 @@
 
 namespace spectral {
 
-/// Maximum number of signals in one Krylov space or series.
-inline constexpr int kMaxSignals = 4;
+/// Maximum number of signals in one Krylov space, and in one series: each number of W or its factor
+/// is then read for all of them at once.
+inline constexpr int kMaxSignals = 4, kMaxSignalsOfSeries = 8;
 
 /// Signals, one in each column: n x c.
 using Signals = Eigen::Ref<const Eigen::MatrixXd>;

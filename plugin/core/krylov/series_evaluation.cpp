@@ -22,10 +22,9 @@ constexpr int kMinNodes = 32, kMaxNodes = 2048;
 /// Round-off of an operation, relative.
 constexpr double kRoundOff = 1e-15;
 
-/// Number of solves beyond which a Lanczos space, which adapts to the signal, is tried instead. A
-/// tenth of a Gaussian, as accurate as ten steps have it, takes 13 on a dragon (Lanczos: 20); a
-/// whole one to 1e-7 takes 16 on a blob of few frequencies (Lanczos: 8).
-constexpr int kMaxSolves = 14;
+/// Number of solves beyond which a Lanczos space, which adapts to the signal, is tried instead. Up
+/// to 66 (Butterworth of order 8 on a dragon) series took less time; gains that jump take hundreds.
+constexpr int kMaxSolves = 80;
 
 /// Number of gains at once: each has a sum that every term is added to.
 constexpr std::size_t kMaxGains = 3;
@@ -153,17 +152,18 @@ class Errors {
     double ofTerm_, ofS_, ofSAtVertices_;
 };
 
-/// S = A / largest in single precision. Of differences, so that constants stay exactly 0.
-class SingleProduct {
+/// S = A / largest. Of differences, so that constants stay exactly 0.
+template <class Scalar, int Columns>
+class Product {
   public:
-    using Values = Eigen::Array4f;
-    static_assert(kMaxSignals == Values::RowsAtCompileTime);
-    static constexpr double kRoundOffOfTerm = 6e-8;
+    using Values = Eigen::Array<Scalar, Columns, 1>;
+    using Detail = Eigen::Array<double, Columns, 1>;
+    static constexpr double kRoundOffOfTerm = std::is_same_v<Scalar, float> ? 6e-8 : kRoundOff;
+    static constexpr bool kKeepsConstants = true;
 
-    SingleProduct(const Laplacian& laplacian, const KrylovOperator& S, const Signals& X,
-                  const Centred&)
+    Product(const Laplacian& laplacian, const KrylovOperator& S, const Signals& X, const Centred&)
         : laplacian_(laplacian), X_(X), largest_(S.lastFrequency() * S.lastFrequency()) {
-        twiceInverse_ = (2.0 / (largest_ * laplacian.D.array())).cast<float>();
+        twiceInverse_ = (2.0 / (largest_ * laplacian.D.array())).template cast<Scalar>();
         if (laplacian.constants.label().minCoeff() < 0)
             excess_ = laplacian.W * Eigen::VectorXd::Ones(laplacian.D.size());
     }
@@ -171,8 +171,8 @@ class SingleProduct {
     Index rowOf(Index vertex) const { return vertex; }
 
     /// Row i of S X, to double precision.
-    Eigen::Array4d detail(Index i) const {
-        Eigen::Array4d sum = Eigen::Array4d::Zero();
+    Detail detail(Index i) const {
+        Detail sum = Detail::Zero();
         for (SparseMatrix::InnerIterator entry(laplacian_.W, i); entry; ++entry)
             for (Index c = 0; c < X_.cols(); ++c)
                 sum[c] += entry.value() * (X_(entry.row(), c) - X_(i, c));
@@ -189,8 +189,8 @@ class SingleProduct {
             const Values here = T[i];
             Values sum = Values::Zero();
             for (auto e = starts[i]; e < starts[i + 1]; ++e)
-                sum += static_cast<float>(weights[e]) * (T[neighbours[e]] - here);
-            if (excess != nullptr) sum += static_cast<float>(excess[i]) * here;
+                sum += static_cast<Scalar>(weights[e]) * (T[neighbours[e]] - here);
+            if (excess != nullptr) sum += static_cast<Scalar>(excess[i]) * here;
             return scale[i] * sum;
         };
     }
@@ -199,21 +199,24 @@ class SingleProduct {
     const Laplacian& laplacian_;
     const Signals& X_;
     double largest_;
-    Eigen::VectorXf twiceInverse_;  // 2 / (D_ii largest)
-    Eigen::VectorXd excess_;        // row sums of W, if there is a fixed boundary
+    Eigen::Matrix<Scalar, Eigen::Dynamic, 1> twiceInverse_;  // 2 / (D_ii largest)
+    Eigen::VectorXd excess_;  // row sums of W, if there is a fixed boundary
 };
 
-/// S / theta_max for any S, in double precision; rows are in the order of S.
+/// S / theta_max of a ShiftInvert; rows are in the order of S.
 template <int Columns>
-class DoubleOperator {
+class Solve {
   public:
     using Values = Eigen::Array<double, Columns, 1, Eigen::DontAlign>;
+    using Detail = Values;
     static constexpr double kRoundOffOfTerm = kRoundOff;
+    static constexpr bool kKeepsConstants = false;
 
-    DoubleOperator(const Laplacian& laplacian, const KrylovOperator& S, const Signals&,
-                   const Centred& centred)
+    Solve(const Laplacian& laplacian, const KrylovOperator& S, const Signals& X,
+          const Centred& centred)
         : S_(S),
           scale_(1.0 / std::max(S.theta(0.0), S.theta(S.lastFrequency() * S.lastFrequency()))),
+          columns_(X.cols()),
           centred_(centred),
           D_(laplacian.D.size()),
           result_(S.rows() * Columns) {
@@ -221,7 +224,7 @@ class DoubleOperator {
         parallelRows(D_.size(), [&](Index begin, Index end) {
             for (Index i = begin; i < end; ++i) {
                 D_[rowOf(i)] = laplacian.D[i];
-                for (int c = 0; c < Columns; ++c) shape[rowOf(i) * Columns + c] = centred(i, c);
+                for (Index c = 0; c < X.cols(); ++c) shape[rowOf(i) * Columns + c] = centred(i, c);
             }
         });
         S.apply(D_, shape.data(), Columns, result_.data());
@@ -232,7 +235,7 @@ class DoubleOperator {
     /// Row i of (S - theta_0) X / theta_max, before any term.
     Values detail(Index i) const {
         Values row = Eigen::Map<const Values>(result_.data() + rowOf(i) * Columns);
-        for (int c = 0; c < Columns; ++c) row[c] -= S_.theta(0.0) * centred_(i, c);
+        for (Index c = 0; c < columns_; ++c) row[c] -= S_.theta(0.0) * centred_(i, c);
         return scale_ * row;
     }
 
@@ -245,7 +248,8 @@ class DoubleOperator {
 
   private:
     const KrylovOperator& S_;
-    double scale_;  // 1 / theta_max
+    double scale_;   // 1 / theta_max
+    Index columns_;  // of the signals; the others are 0
     const Centred& centred_;
     Eigen::VectorXd D_, result_;
 };
@@ -298,7 +302,6 @@ class Terms {
   private:
     using Values = typename Operator::Values;
     using Scalar = typename Values::Scalar;
-    using Detail = Eigen::Array<double, Values::RowsAtCompileTime, 1>;
     using Rows = std::vector<Values, Eigen::aligned_allocator<Values>>;
 
     /// T_0 and what is known from it.
@@ -318,7 +321,7 @@ class Terms {
         details_ += parallelSum(count_, Details(), [&](Index begin, Index end) {
             Details sums;
             for (Index i = begin; i < end; ++i) {
-                const Detail row = operator_.detail(i);
+                const typename Operator::Detail row = operator_.detail(i);
                 sums.norm += D[i] * row.matrix().squaredNorm();
                 sums.largest = std::max(sums.largest, row.abs().maxCoeff());
                 newest_[operator_.rowOf(i)] = (row / unit_).template cast<Scalar>();
@@ -327,7 +330,7 @@ class Terms {
         });
         details_.shape = std::sqrt(details_.shape);
         details_.norm = std::sqrt(details_.norm);
-        if constexpr (std::is_same_v<Scalar, float>) return;  // of differences: no constant part
+        if constexpr (Operator::kKeepsConstants) return;
         Eigen::MatrixXd T0(count_, columns);
         for (Index i = 0; i < count_; ++i)
             for (Index c = 0; c < columns; ++c) T0(i, c) = unit_ * newest_[operator_.rowOf(i)][c];
@@ -457,15 +460,26 @@ std::vector<FullSpectrumResult> applySeries(const Laplacian& laplacian, const Kr
                                             const FullSpectrumOptions& options,
                                             const Progress& progress) {
     if (gains.size() > kMaxGains) return {};
-    if (S.isProduct() && !options.atEveryVertex)
-        if (auto results =
-                evaluate<SingleProduct>(laplacian, S, gains, X, omega, options, false, progress))
+    const auto withSolves = [&](auto columns) {
+        return evaluate<Solve<columns>>(laplacian, S, gains, X, omega, options, false, progress)
+            .value_or(std::vector<FullSpectrumResult>());
+    };
+    constexpr std::integral_constant<int, kMaxSignals> few;
+    constexpr std::integral_constant<int, kMaxSignalsOfSeries> many;
+    const bool areFew = X.cols() <= few;
+    if (!S.isProduct())
+        return areFew ? withColumns(static_cast<int>(X.cols()), withSolves) : withSolves(many);
+    // At every vertex results must not depend on how signals are shifted, beyond their own
+    // rounding.
+    if (areFew && !options.atEveryVertex)
+        if (auto results = evaluate<Product<float, few>>(laplacian, S, gains, X, omega, options,
+                                                         false, progress))
             return *std::move(results);
-    return withColumns(static_cast<int>(X.cols()), [&](auto columns) {
-        auto results = evaluate<DoubleOperator<columns>>(laplacian, S, gains, X, omega, options,
-                                                         S.isProduct(), progress);
-        return results ? *std::move(results) : std::vector<FullSpectrumResult>();
-    });
+    const auto withProducts = [&](auto columns) {
+        return *evaluate<Product<double, columns>>(laplacian, S, gains, X, omega, options, true,
+                                                   progress);
+    };
+    return areFew ? withProducts(few) : withProducts(many);
 }
 
 }  // namespace spectral

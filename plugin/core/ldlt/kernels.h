@@ -42,11 +42,11 @@ struct LdltFactor {
 };
 
 /// Maximum number of right-hand sides of a triangular solve.
-inline constexpr int kMaxRightHandSides = 4;
+inline constexpr int kMaxRightHandSides = 8;
 
 /// The inner loops of a factorization and its solves, compiled for one instruction set.
 ///
-/// Right-hand sides: in the order of the factor, row-major, 1 to kMaxRightHandSides columns.
+/// Right-hand sides: in the order of the factor, row-major, 1 to 4 columns, or kMaxRightHandSides.
 struct Kernels {
     /// Replaces the pivot columns with those of L, with the pivots on the diagonal, and the
     /// contribution block with the Schur complement. False when a pivot is 0.

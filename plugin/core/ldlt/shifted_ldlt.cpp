@@ -93,9 +93,11 @@ void ShiftedLdlt::applyResolvent(const Eigen::VectorXd& D, Eigen::Ref<Eigen::Mat
     // The factor is far larger than the cache: each pass over it serves several columns.
     const Eigen::VectorXi& order = symbolic_->order;
     std::vector<double> ordered(static_cast<std::size_t>(orderedRows() * kMaxRightHandSides));
-    for (Index first = 0; first < U.cols(); first += kMaxRightHandSides) {
-        const auto columns =
-            static_cast<int>(std::min<Index>(kMaxRightHandSides, U.cols() - first));
+    int columns = 0;
+    for (Index first = 0; first < U.cols(); first += columns) {
+        const Index left = U.cols() - first;
+        columns = left >= kMaxRightHandSides ? kMaxRightHandSides
+                                             : static_cast<int>(std::min<Index>(left, 4));
         Eigen::Map<RowMajorMatrix> Y(ordered.data(), orderedRows(), columns);
         for (Index i = 0; i < U.rows(); ++i)
             Y.row(order[i]) = D[i] * U.row(i).segment(first, columns);

@@ -63,7 +63,7 @@ class ShiftedLdlt {
     /// (W - sigma D)^-1 Y, in place and in the factor's order, on the threads of the caller's team.
     /// @param Y  orderedRows() rows of `columns` numbers each, contiguous; rows from n on are
     ///           scratch.
-    /// @param columns  1 to kMaxRightHandSides.
+    /// @param columns  1 to 4, or kMaxRightHandSides.
     void solveOrdered(double* Y, int columns) const;
 
     /// A new, empty factorization that shares the symbolic analysis of W's pattern.

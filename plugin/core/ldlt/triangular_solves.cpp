@@ -154,6 +154,7 @@ void forward(const LdltFactor& factor, double* Y, int columns, Size begin, Size 
         case 1: return forwardColumns<1>(factor, Y, begin, end);
         case 2: return forwardColumns<2>(factor, Y, begin, end);
         case 3: return forwardColumns<3>(factor, Y, begin, end);
+        case 4: return forwardColumns<4>(factor, Y, begin, end);
         default: return forwardColumns<kMaxRightHandSides>(factor, Y, begin, end);
     }
 }
@@ -164,6 +165,7 @@ void backward(const LdltFactor& factor, double* Y, int columns, Size begin, Size
         case 1: return backwardColumns<1>(factor, Y, begin, end);
         case 2: return backwardColumns<2>(factor, Y, begin, end);
         case 3: return backwardColumns<3>(factor, Y, begin, end);
+        case 4: return backwardColumns<4>(factor, Y, begin, end);
         default: return backwardColumns<kMaxRightHandSides>(factor, Y, begin, end);
     }
 }

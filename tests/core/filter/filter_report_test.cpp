@@ -48,8 +48,13 @@ TEST(FractionalFilter, ReportsTheAreaOfPartsThatShrinkToALine) {
 
 TEST(FractionalFilter, ReportsWhatItDid) {
     const Mesh mesh = testing::blob();
-    const FilterOptions options = smoothing(mesh, 4, BasisUpdate::Full);
+    FilterOptions options = smoothing(mesh, 4, BasisUpdate::Full);
+    const FilterResult byProducts = fractionalFilter(mesh.V, mesh.F, options);
+    EXPECT_EQ(byProducts.factorizations, 0);
+    EXPECT_GT(byProducts.products, 0);
+    options.evaluation.solver = Solver::Factorization;
     const FilterResult result = fractionalFilter(mesh.V, mesh.F, options);
+    EXPECT_LT(largestDifference(result.V, byProducts.V), 1e-8);
     EXPECT_EQ(result.steps, 4);
     EXPECT_EQ(result.factorizations, 4);
     EXPECT_EQ(result.components, 1);

@@ -105,22 +105,6 @@ TEST(KrylovSpaces, AreNormalizedWhenRoundOffAddsConstantsToSolves) {
     }
 }
 
-TEST(KrylovSpaces, PassOnTheMemoryOfTheirBasis) {
-    const Operator A(testing::blob());
-    const Products S(A, 1.0);
-    SpareVectors spare;
-    for (const Index columns : {3, 3, 1}) {
-        KrylovSpaces spaces(S, A, A.mesh.V.leftCols(columns), KrylovSpaces::kOrthogonal, true,
-                            &spare);
-        KrylovSpaces own(S, A, A.mesh.V.leftCols(columns));
-        for (int m = 0; m < 8; ++m) EXPECT_EQ(spaces.extend(), own.extend());
-        std::vector<Eigen::VectorXd> ones(static_cast<std::size_t>(columns),
-                                          Eigen::VectorXd::Ones(8));
-        EXPECT_EQ(spaces.combine(ones), own.combine(ones));
-    }
-    EXPECT_EQ(spare.size(), 9U);
-}
-
 TEST(KrylovSpaces, ReturnTheLargestEntryOfACombination) {
     const Operator A(testing::blob());
     ShiftedLdlt ldlt;
