@@ -114,14 +114,21 @@ class Reference:
     # Normals and vertices.
 
     def filtered_normals(
-        self, X: Array, time: float, scale: float, height: float, blurs: int, twice: bool
+        self,
+        X: Array,
+        time: float,
+        scale: float,
+        height: float,
+        blurs: int,
+        twice: bool,
+        guide: Array | None = None,
     ) -> Array:
         N = self.area_normals(X)
         area = np.linalg.norm(N, axis=1)
         q = N
         for _ in range(blurs):
             q = self.average @ q
-        q = unit(q)
+        q = unit(q) if guide is None else guide
         local = np.sqrt(area / area.mean())
         for _ in range(6):
             local = local / 4 + self.neighbours @ local / 4
@@ -129,7 +136,11 @@ class Reference:
         e = np.linalg.norm(X[i] - X[j], axis=1)
         shortness = np.maximum(0, 1 / (local[a] * local[b]) - 2)
         squared = scale**2 + (0.5 * height) ** 2 * shortness
-        w = e / e.mean() * np.exp(-((q[a] - q[b]) ** 2).sum(axis=1) / (2 * squared))
+        distance = ((q[a] - q[b]) ** 2).sum(axis=1)
+        w = np.exp(-distance / (2 * squared))
+        if guide is not None:
+            w += 30 / (1 + distance / 0.02**2)
+        w *= e / e.mean()
         W = sp.coo_array((w, (a, b)), shape=(len(N), len(N)))
         M = sp.diags_array(np.sqrt(np.maximum(area / area.mean(), 0.05)))
         L = sp.csgraph.laplacian((W + W.T).tocsr())
@@ -185,11 +196,11 @@ class Reference:
 
     # Removal of each kind of noise, of a given height.
 
-    def without_white_noise(self, X0: Array, height: float) -> Array:
+    def rounds(self, X0: Array, height: float, most_rounds: int) -> tuple[Array, Array, int]:
         edge = mean_edge(X0, self.F)
         weaker = 1 + (0.13 * edge / height) ** 3
-        X = X0
-        for number in range(10):
+        X, number = X0, 0
+        while number < most_rounds:
             time, sweeps, scale = (4, 16, 0.25) if number < 6 else (8, 32, 0.22)
             N = self.filtered_normals(X, time / weaker, scale, height / edge, 2, True)
             Y = limited(X0, self.followed(X0, N, sweeps), 6 * height)
@@ -200,10 +211,28 @@ class Reference:
                 most = 0.957 * max(1, smooth / 0.76) ** 0.75
             elif smooth > most:
                 break
-            X, last = Y, N
+            X, last, number = Y, N, number + 1
             if upper_median(np.linalg.norm(X - X0, axis=1)) / 0.6745 > 1.03 * height:
                 break
-        return self.finished(X0, X, last, height)
+        return X, last, number
+
+    def flattened(self, X0: Array, N: Array, height: float) -> tuple[Array, Array]:
+        for _ in range(2):
+            N = self.filtered_normals(X0, 6, 0.22, 0, 0, True, N)
+        return limited(X0, self.followed(X0, N, 60), 6 * height), N
+
+    def without_white_noise(self, X0: Array, height: float) -> Array:
+        X, N, number = self.rounds(X0, height, 10)
+        if number > 6:  # by noise splitting, with noise drawn in another way than the plugin's
+            D, noise = self.vertex_normals(X, 1), height * white_noise(self.n)[:, None]
+            training, judging = X0 + 0.7 * noise * D, X0 - noise * D / 0.7
+            one, M, _ = self.rounds(training, np.sqrt(1.49) * height, 6)
+            other, _ = self.flattened(training, M, np.sqrt(1.49) * height)
+            before, after = (((Y - judging) * D).sum(axis=1) for Y in (one, other))
+            deviation = 2 * height * np.sqrt(1 + 1 / 0.49) * np.linalg.norm(before - after)
+            if before @ before - after @ after > deviation:
+                X, N = self.flattened(X0, N, height)
+        return self.finished(X0, X, N, height)
 
     def without_correlated_noise(self, X0: Array, height: float, size: float) -> Array:
         edge = mean_edge(X0, self.F)

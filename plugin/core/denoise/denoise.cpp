@@ -138,7 +138,7 @@ Removal removeAsDiagnosed(const FaceGraph& graph, const Points& X, const Diagnos
 
 /// Memory for the graph of the faces, the measurement and the filter of the normals, bytes per
 /// vertex.
-constexpr double kBytesPerVertex = 800.0;
+constexpr double kBytesPerVertex = 1000.0;
 
 /// Fraction of the progress for the measurement.
 constexpr double kMeasuring = 0.3;

@@ -7,6 +7,7 @@
 
 #include "core/denoise/linear_steps.h"
 #include "core/graph/diffusion.h"
+#include "core/noise/noise_estimate.h"
 
 namespace spectral {
 
@@ -56,7 +57,7 @@ Points withLeastRisk(const FaceGraph& graph, const Points& X, const std::vector<
     constexpr int kBlurs = 2;
     constexpr double kMaxTaken = 0.97;
     const VertexGraph averaged = averagedNeighbours(graph, graph.vertices, mayMove);
-    const Points N = vertexNormals(graph, blurredNormals(graph, areaNormals(X, graph.F), kBlurs));
+    const Points N = smoothVertexNormals(graph, X, kBlurs);
     const Index n = X.rows();
     const Eigen::VectorXd white = whiteNoise(n);
     Rows start(n, 4);

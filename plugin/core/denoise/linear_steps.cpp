@@ -12,6 +12,7 @@
 #include "core/graph/diffusion.h"
 #include "core/graph/local_average.h"
 #include "core/graph/robust_statistics.h"
+#include "core/noise/noise_estimate.h"
 
 namespace spectral {
 
@@ -20,33 +21,12 @@ namespace {
 /// Positions, and white noise that undergoes the same steps.
 using Rows = Eigen::Matrix<double, Eigen::Dynamic, 4, Eigen::RowMajor>;
 
-/// A bijection whose bits depend on all those of its argument (Steele, Lea, Flood 2014).
-std::uint64_t mixed(std::uint64_t bits) {
-    bits += 0x9e3779b97f4a7c15;
-    bits = (bits ^ (bits >> 30)) * 0xbf58476d1ce4e5b9;
-    bits = (bits ^ (bits >> 27)) * 0x94d049bb133111eb;
-    return bits ^ (bits >> 31);
-}
-
 /// White noise of height 1: random signs, whose energies after a filter vary least from draw to
-/// draw (Hutchinson 1990). They are drawn by position, so that they do not depend on the numbering
-/// of the vertices, nor on the unit and the place of the mesh.
+/// draw (Hutchinson 1990).
 Eigen::VectorXd randomSigns(const Points& X) {
-    // Finer than single precision tells positions apart, and coarser than the rounding of a mesh
-    // that is scaled or moved.
-    constexpr double kPlaces = 1073741824.0;
-    const Eigen::RowVector3d centre = X.colwise().mean();
-    const double radius =
-        std::sqrt((X.rowwise() - centre).rowwise().stableNorm().cwiseAbs2().mean());
+    const std::vector<std::uint64_t> bits = randomBits(X);
     Eigen::VectorXd signs(X.rows());
-    for (Index i = 0; i < X.rows(); ++i) {
-        std::uint64_t bits = 0;
-        for (int c = 0; c < 3; ++c) {
-            const double place = radius > 0.0 ? (X(i, c) - centre[c]) / radius * kPlaces : 0.0;
-            bits = mixed(bits ^ static_cast<std::uint64_t>(std::llround(place)));
-        }
-        signs[i] = bits >> 63 == 0 ? 1.0 : -1.0;
-    }
+    for (Index i = 0; i < X.rows(); ++i) signs[i] = bits[i] >> 63 == 0 ? 1.0 : -1.0;
     return signs;
 }
 
@@ -77,10 +57,6 @@ Columns squaredSlopes(const VertexGraph& graph, const Columns& Y) {
         }
     });
     return slopes;
-}
-
-Points smoothNormals(const FaceGraph& graph, const Points& X) {
-    return vertexNormals(graph, blurredNormals(graph, areaNormals(X, graph.F), 1));
 }
 
 /// Averages over the place of each vertex, or over all vertices of a map that is alike everywhere.
@@ -139,7 +115,7 @@ Stages takeStages(const FaceGraph& graph, const VertexGraph& averaged, const Poi
     Rows Y = start;
     takeSteps(averaged, kStepsToNormals, Y);
     // The same normals for all steps, so that a change of normals is not mistaken for shape.
-    const Points N = smoothNormals(graph, Y.leftCols<3>());
+    const Points N = smoothVertexNormals(graph, Y.leftCols<3>(), 1);
 
     Y = start;
     Stages stages;
@@ -263,7 +239,7 @@ LinearSteps linearSteps(const FaceGraph& graph, const VertexGraph& means, const 
     result.X = shapeOf(stages, X, mayMove);
     result.N = areaNormals(result.X, graph.F);
     normalizeRows(result.N);
-    const Points N = smoothNormals(graph, result.X);
+    const Points N = smoothVertexNormals(graph, result.X, 1);
     const Eigen::VectorXd along = (result.X - X).cwiseProduct(N).rowwise().sum();
     const bool isAlike = noise.isAlike();
     if (isAlike || !hasAllDirections(graph.vertices, X, N, noise))

@@ -43,6 +43,9 @@ Eigen::VectorXd localAreas(const FaceGraph& graph, const Eigen::VectorXd& area) 
 /// Distance of normals below which total variation is smooth.
 constexpr double kSmooth = 0.05;
 
+/// Distance of the guide's normals above which a part is not flat.
+constexpr double kFlat = 0.02;
+
 Points unitNormals(Points N) {
     normalizeRows(N);
     return N;
@@ -92,8 +95,10 @@ class System {
                     }
                     weight_(f, c) =
                         factor * side.norm() *
-                        (isVariation ? options.edgeScale / std::sqrt(distance + kSmooth * kSmooth)
-                                     : std::exp(-0.5 * distance / (squaredScale + squaredTilt)));
+                        (isVariation
+                             ? options.edgeScale / std::sqrt(distance + kSmooth * kSmooth)
+                             : std::exp(-0.5 * distance / (squaredScale + squaredTilt)) +
+                                   options.flatness * kFlat * kFlat / (distance + kFlat * kFlat));
                 }
             }
             return sum;
@@ -182,7 +187,10 @@ Points filterNormals(const FaceGraph& graph, const Points& X, const NormalFilter
     constexpr double kAccuracyOfNormals = 1e-2;
     Points N = areaNormals(X, graph.F);
     if (!(N.cwiseAbs().maxCoeff() > 0.0)) return N;  // all faces are degenerate
-    const System A(graph, X, N, unitNormals(blurredNormals(graph, N, options.blurs)), options);
+    const System A(
+        graph, X, N,
+        options.guide ? *options.guide : unitNormals(blurredNormals(graph, N, options.blurs)),
+        options);
     normalizeRows(N);
     const Points B = A.mass().asDiagonal() * N;
     const System::Columns tolerance =

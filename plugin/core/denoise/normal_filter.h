@@ -17,6 +17,9 @@ struct NormalFilterOptions {
     int blurs = 2;            ///< Number of blurs of the normals that define the weights, >= 0.
     bool useTwicing = false;  ///< F + F (1 - F) instead of F: flatter at the shape's frequencies.
     const FacesInNoise* noise = nullptr;  ///< Null: the same time for all, and no noise.
+    const Points* guide = nullptr;  ///< m x 3 unit normals q that define the weights; null: those
+                                    ///< of X, blurred.
+    double flatness = 0.0;          ///< Added to the weights where q are alike, >= 0.
 };
 
 /// The face normals of the shape X (n x 3), smoothed over the faces but not across creases:

@@ -38,9 +38,10 @@ struct RemovalOptions {
 /// and the times of the filter are those of each place.
 ///
 /// The rounds end when the displacement is smoother than white noise (whiteness.h), or its median
-/// exceeds that of the noise: the discrepancy principle (Morozov 1966). Those for correlated noise
-/// have times and blurs that scale with l^2 and sweeps that scale with l, its correlation length.
-/// In the end, faces that the noise has folded are unfolded.
+/// exceeds that of the noise: the discrepancy principle (Morozov 1966). Flat parts are then
+/// averaged farther, if noise splitting (noise_splitting.h) measures that this is nearer to the
+/// truth. Those for correlated noise have times and blurs that scale with l^2 and sweeps that scale
+/// with l, its correlation length. In the end, faces that the noise has folded are unfolded.
 ///
 /// All constants of this folder and the meshes they were chosen on are in
 /// tests/benchmarks/README.md.

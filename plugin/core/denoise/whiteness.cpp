@@ -6,6 +6,7 @@
 
 #include "core/graph/diffusion.h"
 #include "core/graph/robust_statistics.h"
+#include "core/noise/noise_estimate.h"
 
 namespace spectral {
 
@@ -19,8 +20,7 @@ double deviation(const Eigen::VectorXd& y) {
 
 Eigen::VectorXd displacementAlongNormals(const FaceGraph& graph, const Points& X0,
                                          const Points& X) {
-    const Points N = vertexNormals(graph, blurredNormals(graph, areaNormals(X, graph.F), 1));
-    return (X - X0).cwiseProduct(N).rowwise().sum();
+    return (X - X0).cwiseProduct(smoothVertexNormals(graph, X, 1)).rowwise().sum();
 }
 
 double smoothness(const VertexGraph& graph, const Eigen::VectorXd& signal) {

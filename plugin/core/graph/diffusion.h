@@ -1,6 +1,8 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstdint>
+#include <vector>
 
 #include "core/graph/face_graph.h"
 #include "core/support/threads.h"
@@ -42,5 +44,9 @@ void diffuse(const VertexGraph& graph, Rows& X) {
 
 /// Independent samples of the standard normal distribution, the same on every machine.
 Eigen::VectorXd whiteNoise(Index count);
+
+/// Independent bits for each of n positions. They are drawn by position, so that nothing depends on
+/// the numbering of the vertices, nor on the unit and the place of the mesh.
+std::vector<std::uint64_t> randomBits(const Points& X);
 
 }  // namespace spectral
