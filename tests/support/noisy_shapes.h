@@ -13,6 +13,13 @@
 
 namespace spectral::testing {
 
+/// Independent samples of the standard normal distribution.
+inline Eigen::VectorXd whiteNoise(Index count, unsigned seed = 1) {
+    std::mt19937 random(seed);
+    std::normal_distribution<double> normal;
+    return Eigen::VectorXd::NullaryExpr(count, [&] { return normal(random); });
+}
+
 /// Noise of a standard deviation of `edges` mean edges along every axis, thus along the normals.
 inline Mesh withGaussianNoise(Mesh mesh, double edges, unsigned seed) {
     std::mt19937 random(seed);

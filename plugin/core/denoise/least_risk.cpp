@@ -15,8 +15,9 @@ namespace {
 
 constexpr int kDegree = 16;
 
-/// Positions, and white noise that undergoes the same.
-using Rows = Eigen::Matrix<double, Eigen::Dynamic, 4, Eigen::RowMajor>;
+constexpr int kProbes = 5;
+using Rows = Probed<kProbes>;
+using Row = Eigen::Matrix<double, 1, 3 + kProbes>;
 using Basis = Eigen::Matrix<double, Eigen::Dynamic, kDegree>;
 using Gram = Eigen::Matrix<double, kDegree, kDegree>;
 using Coefficients = Eigen::Matrix<double, kDegree, 1>;
@@ -28,8 +29,7 @@ void forEachPolynomial(const VertexGraph& graph, const Rows& X, const Visit& vis
     for (int j = 1; j <= kDegree; ++j) {
         next = j == 1 ? X : Rows(2.0 * here - before);  // of vertices that may not move
         forEachMean(graph, here, [&](Index i, const auto& mean) {
-            next.row(i) =
-                j == 1 ? Eigen::RowVector4d(mean) : Eigen::RowVector4d(2.0 * mean - before.row(i));
+            next.row(i) = j == 1 ? Row(mean) : Row(2.0 * mean - before.row(i));
         });
         visit(j, Rows(next - X));
         before.swap(here);
@@ -59,9 +59,7 @@ Points withLeastRisk(const FaceGraph& graph, const Points& X, const std::vector<
     const VertexGraph averaged = averagedNeighbours(graph, graph.vertices, mayMove);
     const Points N = smoothVertexNormals(graph, X, kBlurs);
     const Index n = X.rows();
-    const Eigen::VectorXd white = whiteNoise(n);
-    Rows start(n, 4);
-    start << X, white;
+    const Rows start = withProbes<kProbes>(X);
 
     Basis along(n, kDegree);
     Coefficients trace;
@@ -69,10 +67,11 @@ Points withLeastRisk(const FaceGraph& graph, const Points& X, const std::vector<
     Eigen::Matrix3d squares;
     forEachPolynomial(averaged, start, [&](int j, const Rows& change) {
         along.col(j - 1) = change.leftCols<3>().cwiseProduct(N).rowwise().sum();
-        trace[j - 1] = change.col(3).dot(white);
+        trace[j - 1] =
+            change.rightCols<kProbes>().cwiseProduct(start.rightCols<kProbes>()).sum() / kProbes;
         if (j > 1) return;
         squares = change.leftCols<3>().transpose() * change.leftCols<3>();
-        whiteSquares = change.col(3).squaredNorm();
+        whiteSquares = change.rightCols<kProbes>().squaredNorm() / kProbes;
     });
     const double variance = height * height;
     const Coefficients c = solved(along.transpose() * along, -variance * trace);

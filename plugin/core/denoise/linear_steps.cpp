@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdint>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -20,15 +19,6 @@ namespace {
 
 /// Positions, and white noise that undergoes the same steps.
 using Rows = Eigen::Matrix<double, Eigen::Dynamic, 4, Eigen::RowMajor>;
-
-/// White noise of height 1: random signs, whose energies after a filter vary least from draw to
-/// draw (Hutchinson 1990).
-Eigen::VectorXd randomSigns(const Points& X) {
-    const std::vector<std::uint64_t> bits = randomBits(X);
-    Eigen::VectorXd signs(X.rows());
-    for (Index i = 0; i < X.rows(); ++i) signs[i] = bits[i] >> 63 == 0 ? 1.0 : -1.0;
-    return signs;
-}
 
 /// Numbers of steps to try, and those before the normals are taken.
 constexpr std::array<int, 11> kSteps{5, 10, 14, 20, 28, 40, 56, 80, 113, 160, 226};
@@ -107,7 +97,7 @@ Stages takeStages(const FaceGraph& graph, const VertexGraph& averaged, const Poi
     std::vector<bool> counts(mayMove);
     for (Index i = 0; i < n; ++i) counts[i] = mayMove[i] && !graph.onRim[i];
     const Average average(graph.vertices, counts, kErrors, noise.isAlike());
-    const Eigen::VectorXd white = randomSigns(X).cwiseProduct(noise.height);
+    const Eigen::VectorXd white = withProbes<1>(X).col(3).cwiseProduct(noise.height);
     const Eigen::VectorXd whiteSlope =
         average.of(squaredSlopes(graph.vertices, white)).cwiseMax(kTiny);
     Rows start(n, 4);

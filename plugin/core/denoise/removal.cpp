@@ -221,7 +221,8 @@ Removal removeAlongRays(const FaceGraph& graph, const Points& X0, const RemovalO
          strength <= kStrongest; strength *= 2.0) {
         Points N = normalsOfLeastVariation(graph, X0, strength);
         for (Index f = 0; f < N.rows(); ++f)  // such as a bridge over a silhouette
-            if (std::abs(N.row(f).dot(D.row(graph.F(f, 0)))) < kGrazing) N.row(f).setZero();
+            if (std::abs(N.row(f).dot(D(graph.F.row(f), Eigen::all).colwise().mean())) < kGrazing)
+                N.row(f).setZero();
         removal.X = followNormalsAlong(graph, X0, N, D, options.mayMove, kSweepsAlong);
         if (options.rays.arePixels) break;
         Eigen::VectorXd removed = removedAlongNormals(graph, X0, removal.X, options).cwiseAbs();

@@ -1,7 +1,6 @@
 #include "core/graph/diffusion.h"
 
 #include <cmath>
-#include <random>
 
 namespace spectral {
 
@@ -18,33 +17,22 @@ std::uint64_t mixed(std::uint64_t bits) {
 }  // namespace
 
 std::vector<std::uint64_t> randomBits(const Points& X) {
-    // Finer than single precision tells positions apart, and coarser than the rounding of a mesh
+    // As fine as single precision tells positions apart, and coarser than the rounding of a mesh
     // that is scaled or moved.
-    constexpr double kPlaces = 1073741824.0;
-    const Eigen::RowVector3d centre = X.colwise().mean();
-    const double radius =
-        std::sqrt((X.rowwise() - centre).rowwise().stableNorm().cwiseAbs2().mean());
+    constexpr double kPlaces = 67108864.0;
     std::vector<std::uint64_t> bits(static_cast<std::size_t>(X.rows()), 0);
-    for (Index i = 0; i < X.rows(); ++i)
-        for (int c = 0; c < 3; ++c) {
-            const double place = radius > 0.0 ? (X(i, c) - centre[c]) / radius * kPlaces : 0.0;
-            bits[i] = mixed(bits[i] ^ static_cast<std::uint64_t>(std::llround(place)));
-        }
+    if (X.rows() == 0) return bits;
+    // Largest and smallest values do not depend on the order of the vertices, as a mean does.
+    const Eigen::RowVector3d most = X.colwise().maxCoeff(), least = X.colwise().minCoeff();
+    const Eigen::RowVector3d centre = 0.5 * (most + least);
+    const double extent = (most - least).maxCoeff(), scale = extent > 0.0 ? kPlaces / extent : 0.0;
+    parallelRows(X.rows(), [&](Index begin, Index end) {
+        for (Index i = begin; i < end; ++i)
+            for (int c = 0; c < 3; ++c)
+                bits[i] = mixed(bits[i] ^ static_cast<std::uint64_t>(
+                                              std::llround((X(i, c) - centre[c]) * scale)));
+    });
     return bits;
-}
-
-Eigen::VectorXd whiteNoise(Index count) {
-    // Box and Muller 1958; std::normal_distribution differs between standard libraries.
-    constexpr double kRange = 4294967296.0;
-    std::mt19937 random(1);
-    const auto uniform = [&] { return (static_cast<double>(random()) + 0.5) / kRange; };
-    Eigen::VectorXd values(count);
-    for (Index i = 0; i < count; i += 2) {
-        const double radius = std::sqrt(-2.0 * std::log(uniform())), angle = 2.0 * kPi * uniform();
-        values[i] = radius * std::cos(angle);
-        if (i + 1 < count) values[i + 1] = radius * std::sin(angle);
-    }
-    return values;
 }
 
 }  // namespace spectral

@@ -42,11 +42,26 @@ void diffuse(const VertexGraph& graph, Rows& X) {
     X.swap(next);
 }
 
-/// Independent samples of the standard normal distribution, the same on every machine.
-Eigen::VectorXd whiteNoise(Index count);
-
 /// Independent bits for each of n positions. They are drawn by position, so that nothing depends on
 /// the numbering of the vertices, nor on the unit and the place of the mesh.
 std::vector<std::uint64_t> randomBits(const Points& X);
+
+/// Positions, and columns of white noise of height 1 that undergo the same.
+template <int kProbes>
+using Probed = Eigen::Matrix<double, Eigen::Dynamic, 3 + kProbes, Eigen::RowMajor>;
+
+/// Positions with probes: random signs of randomBits, whose energies after a filter vary least from
+/// draw to draw (Hutchinson 1990).
+template <int kProbes>
+Probed<kProbes> withProbes(const Points& X) {
+    const std::vector<std::uint64_t> bits = randomBits(X);
+    Probed<kProbes> rows(X.rows(), 3 + kProbes);
+    for (Index i = 0; i < X.rows(); ++i) {
+        rows.row(i).template head<3>() = X.row(i);
+        for (int k = 0; k < kProbes; ++k)
+            rows(i, 3 + k) = (bits[i] >> (63 - k) & 1) == 0 ? 1.0 : -1.0;
+    }
+    return rows;
+}
 
 }  // namespace spectral

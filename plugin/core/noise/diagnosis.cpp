@@ -194,15 +194,14 @@ void addFlatParts(const FaceGraph& graph, const Points& X, std::vector<bool>& is
     std::vector<int> part;
     for (int start = 0; start < graph.faceCount(); ++start) {
         part.clear();
-        const auto reach = [&](int f) {
-            if (isReached[f] || !(N.row(f).dot(N.row(start)) > kSame)) return;
+        const auto reach = [&](int f, int from) {
+            if (f < 0 || isReached[f] || !(N.row(f).dot(N.row(from)) > kSame)) return;
             isReached[f] = true;
             part.push_back(f);
         };
-        reach(start);
+        reach(start, start);
         for (std::size_t k = 0; k < part.size(); ++k)
-            for (int c = 0; c < 3; ++c)
-                if (graph.neighbours(part[k], c) >= 0) reach(graph.neighbours(part[k], c));
+            for (int c = 0; c < 3; ++c) reach(graph.neighbours(part[k], c), part[k]);
         if (part.size() < kMinFaces) continue;
         isClean.resize(static_cast<std::size_t>(X.rows()), false);
         for (const int f : part)

@@ -18,16 +18,30 @@ namespace {
 constexpr int kOctaves = 7;
 using Octaves = Eigen::Array<double, kOctaves, 1>;
 
-/// The standard deviation of the measured values.
-double deviationOf(const Eigen::VectorXd& values, const std::vector<bool>& isMeasured) {
-    double sum = 0.0, squares = 0.0, count = 0.0;
-    for (Index i = 0; i < values.size(); ++i) {
+/// The standard deviation of the probes at the measured vertices.
+template <int kProbes>
+double deviationOfProbes(const Probed<kProbes>& rows, const std::vector<bool>& isMeasured) {
+    double squares = 0.0, count = 0.0;
+    for (Index i = 0; i < rows.rows(); ++i) {
         if (!isMeasured[i]) continue;
-        sum += values[i];
-        squares += values[i] * values[i];
-        count += 1.0;
+        squares += rows.row(i).template tail<kProbes>().squaredNorm();
+        count += kProbes;
     }
-    return count > 0.0 ? std::sqrt(std::max(0.0, squares / count - std::pow(sum / count, 2))) : 0.0;
+    return count > 0.0 ? std::sqrt(squares / count) : 0.0;
+}
+
+template <int kProbes>
+void visitOctaves(const VertexGraph& graph, const Points& X, const Points& N,
+                  const std::vector<bool>& isMeasured, int count, const OctaveVisitor& visit) {
+    Probed<kProbes> Y = withProbes<kProbes>(X);
+    int power = 0;
+    for (int k = 0; k < count; ++k) {
+        const Probed<kProbes> before = Y;
+        for (const int end = 1 << k; power < end; ++power) diffuse(graph, Y);
+        const Probed<kProbes> octave = before - Y;
+        visit(k, octave.template leftCols<3>().cwiseProduct(N).rowwise().sum(),
+              deviationOfProbes<kProbes>(octave, isMeasured));
+    }
 }
 
 /// The moduli of the measured values.
@@ -193,11 +207,11 @@ std::optional<int> octaveOfCrests(const Octaves& height) {
 }
 
 /// Whether the octaves rise alike, as on natural ground: there is neither a size that noise ends at
-/// nor a shape under it. The rise is at most 2.15 on fractal ground, 1.47 at least; a shape under
-/// scanner noise reaches 2.29 and more (depth_igea of ../shared/denoise), noise on a flat part ends
+/// nor a shape under it. The rise is at most 2.25 on fractal ground, 1.43 at least; a shape under
+/// scanner noise reaches 2.3 and more (depth_igea of ../shared/denoise), noise on a flat part ends
 /// with 1.3 and less.
 bool isSelfSimilar(const Octaves& height) {
-    constexpr double kLeast = 1.4, kMost = 2.22;
+    constexpr double kLeast = 1.4, kMost = 2.27;
     for (int k = 2; k + 1 < kOctaves; ++k)
         if (const double rise = height[k + 1] / height[k]; !(rise > kLeast && rise < kMost))
             return false;
@@ -241,17 +255,13 @@ Eigen::VectorXd scaledResiduals(const VertexGraph& graph, const Points& X, const
 
 void forEachOctave(const VertexGraph& graph, const Points& X, const Points& N,
                    const std::vector<bool>& isMeasured, int count, const OctaveVisitor& visit) {
-    using Rows = Eigen::Matrix<double, Eigen::Dynamic, 4, Eigen::RowMajor>;
-    Rows Y(X.rows(), 4);  // positions and white noise
-    Y << X, whiteNoise(X.rows());
-    int power = 0;
-    for (int k = 0; k < count; ++k) {
-        const Rows before = Y;
-        for (const int end = 1 << k; power < end; ++power) diffuse(graph, Y);
-        const Rows octave = before - Y;
-        visit(k, octave.leftCols<3>().cwiseProduct(N).rowwise().sum(),
-              deviationOf(octave.col(3), isMeasured));
-    }
+    // On few vertices one draw says too little: some 7 % of the height of the last octave on
+    // 15,000. With five, a row is a line of the cache.
+    constexpr Index kMany = 50000;
+    if (X.rows() < kMany)
+        visitOctaves<5>(graph, X, N, isMeasured, count, visit);
+    else
+        visitOctaves<1>(graph, X, N, isMeasured, count, visit);
 }
 
 double residualCorrelation(const FaceGraph& graph, const Points& X, const Points& N,
@@ -272,21 +282,19 @@ bool SecondResiduals::isNoise(double firstCorrelation, double meanEdge) const {
 
 Eigen::VectorXd scaledSecondResiduals(const FaceGraph& graph, const Points& X, const Points& N,
                                       std::vector<bool>& isMeasured) {
-    using Rows = Eigen::Matrix<double, Eigen::Dynamic, 4, Eigen::RowMajor>;
     const VertexGraph& vertices = graph.vertices;
     const std::vector<bool> wasMeasured(isMeasured);
     for (Index i = 0; i < vertices.size(); ++i)
         for (Index k = vertices.first[i]; k < vertices.first[i + 1]; ++k)
             isMeasured[i] = isMeasured[i] && wasMeasured[vertices.at[k]];
-    Rows residual(X.rows(), 4);  // of positions and white noise
-    residual << X, whiteNoise(X.rows());
+    Probed<1> residual = withProbes<1>(X);
     for (int k = 0; k < 2; ++k) {
-        Rows next = Rows::Zero(X.rows(), 4);
+        Probed<1> next = Probed<1>::Zero(X.rows(), 4);
         forEachMean(vertices, residual,
                     [&](Index i, const auto& mean) { next.row(i) = residual.row(i) - mean; });
         residual.swap(next);
     }
-    const double white = deviationOf(residual.col(3), isMeasured);
+    const double white = deviationOfProbes<1>(residual, isMeasured);
     return residual.leftCols<3>().cwiseProduct(N).rowwise().sum() / (white > 0.0 ? white : 1.0);
 }
 
@@ -357,8 +365,8 @@ NoiseEstimate estimateNoise(const FaceGraph& graph, const Points& X, const Point
         isLong ? std::optional<int>(kLongerThanWhite) : octaveOfCrests(height);
     // It is the same in all octaves, so that what falls is relief of a few edges: to .66 and less
     // with reliefs of four edges, to .76 with impulses (nicolo_i6), .9 and more with other noise.
-    // Without noise it falls to .50 and less, with noise of .2 edges to .58 and more.
-    constexpr double kMinOfNoise = 0.7, kMaxOfRelief = 0.55;
+    // Without noise it falls to .39 and less, with noise of .2 edges to .51 and more.
+    constexpr double kMinOfNoise = 0.7, kMaxOfRelief = 0.5;
     const double lowest = crests ? height.minCoeff() : height.head<kWhiteOctaves>().minCoeff();
     const bool isShort = lowest < kMinOfNoise * height[0];
     const bool isRelief =

@@ -3,8 +3,11 @@
 #include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <utility>
 #include <vector>
 
+#include "core/graph/diffusion.h"
 #include "core/graph/robust_statistics.h"
 #include "core/support/threads.h"
 
@@ -84,11 +87,18 @@ std::vector<Eigen::Matrix3d> latticeAxes(const FaceGraph& graph, const Points& X
     constexpr std::size_t kMaxDirections = 24;
     constexpr double kMinCovered = 0.75;  // of the faces, by the commonest directions
     const Points N = areaNormals(X, graph.F);
-    const Index stride = std::max<Index>(1, N.rows() / kSamples);
+    // The same faces in the same order, whatever the numbering.
+    const std::vector<std::uint64_t> bits = randomBits(X);
+    std::vector<std::pair<std::uint64_t, Index>> sampled;
+    for (Index f = 0; f < N.rows(); ++f)
+        sampled.emplace_back(bits[graph.F(f, 0)] + bits[graph.F(f, 1)] + bits[graph.F(f, 2)], f);
+    const auto last = sampled.begin() + std::min(kSamples, N.rows());
+    std::partial_sort(sampled.begin(), last, sampled.end());
+    sampled.erase(last, sampled.end());
     std::vector<Eigen::Vector3d> sums;
     std::vector<Index> counts;
     Index samples = 0;
-    for (Index f = 0; f < N.rows(); f += stride) {
+    for (const auto& [key, f] : sampled) {
         const Eigen::Vector3d normal = N.row(f).transpose();
         if (!(normal.norm() > 0.0)) continue;
         ++samples;

@@ -35,15 +35,21 @@ TEST(RobustStatistics, IgnoreOutliers) {
     EXPECT_EQ(trimmedDeviation({}), 0.0);
 }
 
-TEST(Diffusion, KeepsConstantsAndWhiteNoiseHasUnitVariance) {
+TEST(Diffusion, KeepsConstantsAndProbesAreIndependent) {
     const Mesh mesh = testing::blob();
     const FaceGraph graph = faceGraph(mesh.F, mesh.V.rows());
     Eigen::VectorXd ones = Eigen::VectorXd::Ones(mesh.V.rows());
     diffuse(graph.vertices, ones);
     EXPECT_LT((ones.array() - 1.0).abs().maxCoeff(), 1e-15);
-    const Eigen::VectorXd noise = whiteNoise(100001);
-    EXPECT_NEAR(noise.mean(), 0.0, 0.02);
-    EXPECT_NEAR(noise.squaredNorm() / 100001.0, 1.0, 0.02);
+    const Vertices V = testing::icosphere(5).V;
+    constexpr int kProbes = 5;
+    const auto rows = withProbes<kProbes>(V);
+    const Eigen::MatrixXd probes = rows.rightCols<kProbes>();
+    EXPECT_EQ(rows.leftCols<3>(), V);
+    EXPECT_EQ(probes.cwiseAbs().minCoeff(), 1.0);
+    const Eigen::MatrixXd products = probes.transpose() * probes / double(V.rows());
+    EXPECT_LT((products - Eigen::MatrixXd::Identity(kProbes, kProbes)).cwiseAbs().maxCoeff(), 0.05);
+    EXPECT_LT(probes.colwise().mean().cwiseAbs().maxCoeff(), 0.05);
 }
 
 TEST(Diagnosis, MeasuresTheHeightOfWhiteNoise) {
@@ -60,7 +66,7 @@ TEST(Diagnosis, MeasuresTheHeightOfWhiteNoise) {
 TEST(Diagnosis, MeasuresCorrelatedNoise) {
     Mesh mesh = testing::rectangle(1.0, 1.0, 70, 70);
     const FaceGraph graph = faceGraph(mesh.F, mesh.V.rows());
-    Eigen::VectorXd z = whiteNoise(mesh.V.rows());
+    Eigen::VectorXd z = testing::whiteNoise(mesh.V.rows());
     for (int k = 0; k < 2; ++k) diffuse(graph.vertices, z);
     mesh.V.col(2) = 0.2 / 70.0 / std::sqrt(z.squaredNorm() / double(z.size())) * z;
     std::vector<bool> isMeasured(graph.onRim);
@@ -93,7 +99,7 @@ TEST(Diagnosis, TellsScanLinesFromNeedlesOfCad) {
         Mesh lines = testing::rectangle(60.0, 60.0 * spacing, 60, 60);
         lines.V.col(2) = 3.0 * (lines.V.col(0) / 15.0).array().sin();
         EXPECT_EQ(diagnosed(lines).kind, NoiseKind::Tessellation);
-        const Eigen::VectorXd noise = whiteNoise(lines.V.rows());
+        const Eigen::VectorXd noise = testing::whiteNoise(lines.V.rows());
         lines.V.col(2) += 0.15 * noise;
         const Diagnosis found = diagnosed(lines);
         EXPECT_EQ(found.kind, NoiseKind::ScanLines) << spacing;

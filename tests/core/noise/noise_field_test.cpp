@@ -25,7 +25,7 @@ TEST(LocalAverage, FastDiffusionIsLazyDiffusion) {
     const Mesh mesh = testing::blob();
     const FaceGraph graph = faceGraph(mesh.F, mesh.V.rows());
     for (const int steps : {1, 2, 8, 32, 128}) {
-        const Eigen::VectorXd noise = whiteNoise(mesh.V.rows());
+        const Eigen::VectorXd noise = testing::whiteNoise(mesh.V.rows());
         Eigen::VectorXd expected = noise, fast = noise;
         for (int k = 0; k < steps; ++k) diffuse(graph.vertices, expected);
         diffuseFast(graph.vertices, steps, fast);
@@ -51,7 +51,7 @@ TEST(LocalAverage, DeviationIsThatOfItsPlaceAndIgnoresOutliers) {
     const Mesh mesh = testing::icosphere(5);
     const FaceGraph graph = faceGraph(mesh.F, mesh.V.rows());
     const std::vector<bool> all = testing::everywhere(mesh.V.rows());
-    Eigen::VectorXd noise = whiteNoise(mesh.V.rows());
+    Eigen::VectorXd noise = testing::whiteNoise(mesh.V.rows());
     std::mt19937 random(1);
     for (Index i = 0; i < noise.size(); ++i) {
         if (mesh.V(i, 2) < 0.0) noise[i] *= 0.1;
