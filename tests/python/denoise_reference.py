@@ -29,15 +29,32 @@ def upper_median(values: Array) -> float:
     return float(np.sort(values)[len(values) // 2])
 
 
-def white_noise(count: int) -> Array:
-    """The plugin's white noise: Box-Muller on numbers of a Mersenne twister."""
-    twister = np.random.MT19937()
-    twister._legacy_seeding(1)
-    raw = twister.random_raw(2 * ((count + 1) // 2)).reshape(-1, 2)
-    u, v = ((raw + 0.5) / 2.0**32).T
-    radius = np.sqrt(-2 * np.log(u))
-    both = np.stack([radius * np.cos(2 * np.pi * v), radius * np.sin(2 * np.pi * v)], axis=1)
-    return np.asarray(both.ravel()[:count])
+def trimmed(moduli: Array) -> float:
+    """Return the deviation of moduli within three deviations."""
+    deviation = upper_median(moduli) / 0.6745
+    for _ in range(5):
+        deviation = upper_median(moduli[moduli < 3 * deviation]) / 0.6722
+    return deviation
+
+
+def probes(X: Array) -> Array:
+    """Return n x 5 random signs by position: SplitMix64 of the places in the bounding box."""
+
+    def mixed(bits: NDArray[np.uint64]) -> NDArray[np.uint64]:
+        bits = bits + np.uint64(0x9E3779B97F4A7C15)
+        bits = (bits ^ (bits >> np.uint64(30))) * np.uint64(0xBF58476D1CE4E5B9)
+        bits = (bits ^ (bits >> np.uint64(27))) * np.uint64(0x94D049BB133111EB)
+        return np.asarray(bits ^ (bits >> np.uint64(31)))
+
+    centred = X - 0.5 * (X.max(axis=0) + X.min(axis=0))
+    centred -= 0.5 * (centred.max(axis=0) + centred.min(axis=0))
+    places = centred * (2.0**26 / np.ptp(centred, axis=0).max())
+    rounded = (np.sign(places) * np.floor(np.abs(places) + 0.5)).astype(np.int64).astype(np.uint64)
+    bits = np.zeros(len(X), np.uint64)
+    for c in range(3):
+        bits = mixed(bits ^ rounded[:, c])
+    draws = np.arange(63, 58, -1, dtype=np.uint64)
+    return np.asarray(1.0 - 2.0 * (bits[:, None] >> draws & np.uint64(1)))
 
 
 class Reference:
@@ -81,22 +98,16 @@ class Reference:
         """Height and size of the noise, by the octaves of diffusion."""
         N = self.vertex_normals(X, 3)
         along, white = [], []
-        Y, w = X, white_noise(self.n)
+        Y, w = X, probes(X)
         for k in range(7):
             times = 2**k - (2 ** (k - 1) if k else 0)
             Z, z = self.diffused(Y, times), self.diffused(w, times)
             along.append(np.abs(((Y - Z) * N).sum(axis=1)))
-            white.append((w - z).std())
+            white.append(np.sqrt(((w - z) ** 2).mean()))
             Y, w = Z, z
         energy = self.diffused(along[3] ** 2, 16)
         quiet = energy <= np.sort(energy)[self.n // 2]
-        heights = []
-        for moduli, scale in zip(along, white, strict=True):
-            moduli = moduli[quiet]
-            deviation = upper_median(moduli) / 0.6745
-            for _ in range(5):
-                deviation = upper_median(moduli[moduli < 3 * deviation]) / 0.6722
-            heights.append(deviation / scale)
+        heights = [trimmed(m[quiet]) / w for m, w in zip(along, white, strict=True)]
         a, g = np.array(heights), np.array(white)
         rise = np.clip((a[3:] / a[2:-1]).max(), 2.3, 3.0)
         shape = [min(a[j] / rise ** (j - k) for j in range(k, 7)) for k in range(7)]
@@ -109,7 +120,12 @@ class Reference:
         lengths = np.sqrt([0.5, 1.5, 3, 6, 12, 24, 48])
         mean = (energies @ lengths) / energies.sum()
         size = max(1.0, mean / ((g**2)[:5] @ lengths[:5] / (g**2)[:5].sum()))
-        return (n[0], 1.0) if size < 1.22 else (1.3 * np.sqrt(energies.sum() / (g @ g)), size)
+        both = np.hstack([X, probes(X)[:, :1]])
+        for _ in range(2):
+            both = both - self.P @ both
+        moduli = np.abs((both[:, :3] * N).sum(axis=1))
+        lowest = min(n[0], trimmed(moduli) / np.sqrt((both[:, 3] ** 2).mean()))
+        return (lowest, 1.0) if size < 1.22 else (1.3 * np.sqrt(energies.sum() / (g @ g)), size)
 
     # Normals and vertices.
 
@@ -224,7 +240,10 @@ class Reference:
     def without_white_noise(self, X0: Array, height: float) -> Array:
         X, N, number = self.rounds(X0, height, 10)
         if number > 6:  # by noise splitting, with noise drawn in another way than the plugin's
-            D, noise = self.vertex_normals(X, 1), height * white_noise(self.n)[:, None]
+            D, noise = (
+                self.vertex_normals(X, 1),
+                height * np.random.default_rng(1).normal(size=(self.n, 1)),
+            )
             training, judging = X0 + 0.7 * noise * D, X0 - noise * D / 0.7
             one, M, _ = self.rounds(training, np.sqrt(1.49) * height, 6)
             other, _ = self.flattened(training, M, np.sqrt(1.49) * height)

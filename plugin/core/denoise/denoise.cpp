@@ -208,6 +208,7 @@ Eigen::VectorXd heightsOf(const Diagnosis& diagnosis, const DenoiseOptions& opti
 Eigen::VectorXd offsetWeight(Eigen::VectorXd weight, const MovingPart& part,
                              const Diagnosis& diagnosis) {
     const NoiseField& field = diagnosis.field;
+    if (field.isAlike()) return weight;  // to the bit as without a field
     for (Index i = 0; i < field.height.size(); ++i)
         weight[part.surface.vertex[i]] *=
             std::min(1.0, field.height[i] / (field.median * field.edge[i]));

@@ -58,11 +58,12 @@ bool hasManySpikes(const Diagnosis& diagnosis) {
 /// Fraction of the progress for the mesh as one, before its places.
 constexpr double kWholeMesh = 0.7;
 
-/// Share of the height that is noise. It decreases above a correlation of residuals that may come
-/// from a scanner's noise, but also from a coarse shape with a little noise.
-double noiseShare(double correlation) {
-    constexpr double kSlope = 14.0, kMinNoiseShare = 0.3;
-    return std::clamp(1.0 - kSlope * (correlation - kMaxPureNoise), kMinNoiseShare, 1.0);
+/// Share of the height that is noise, `least` or more. It decreases above a correlation of
+/// residuals that may come from a scanner's noise, but also from a coarse shape with a little
+/// noise.
+double noiseShare(double correlation, double least) {
+    constexpr double kSlope = 14.0;
+    return std::clamp(1.0 - kSlope * (correlation - kMaxPureNoise), least, 1.0);
 }
 
 // Chosen on blocks1, blocks3, grid05 to grid11 of ../shared/denoise_local. In mean edges:
@@ -215,6 +216,9 @@ Diagnosis diagnoseWhole(const FaceGraph& graph, const Points& X,
                         const Progress& progress) {
     constexpr Index kMinMeasuredFine = 1000;        // vertices
     constexpr double kMinHeightCorrelated = 0.045;  // mean edges
+    // Of noise of .1 edges on a coarse cow, .3 leaves 80 % of the angle and 1 takes some of the
+    // cow; as correlated noise, .4 takes some of a range scan (rangescan_lato000, decimated).
+    constexpr double kLeastWhite = 0.4, kLeastCorrelated = 0.3;
     constexpr double kMaxCorrelationOfNoise = 0.2;  // above it, the residuals are those of a shape
     constexpr double kHighNoise = 0.09;  // mean edges: no shape alternates as high, if at all
     Diagnosis diagnosis;
@@ -271,12 +275,12 @@ Diagnosis diagnoseWhole(const FaceGraph& graph, const Points& X,
     if (isRising || noise.isShape) return diagnosis;
     if (noise.size > 1.0) {
         if (measured >= kMinMeasuredFine &&
-            (isCoarser ? 1.0 : noiseShare(correlation)) * noise.height >=
+            (isCoarser ? 1.0 : noiseShare(correlation, kLeastCorrelated)) * noise.height >=
                 kMinHeightCorrelated * edge)
             diagnosis.kind = NoiseKind::Correlated;
         return diagnosis;
     }
-    const double share = noise.isUnderShape ? 1.0 : noiseShare(correlation);
+    const double share = noise.isUnderShape ? 1.0 : noiseShare(correlation, kLeastWhite);
     if (!isWhite && !noise.isUnderShape && noise.height < kHighNoise * edge &&
         !hasManySpikes(diagnosis))
         return diagnosis;

@@ -376,7 +376,8 @@ NoiseEstimate estimateNoise(const FaceGraph& graph, const Points& X, const Point
         (correlation >= kMaxPureNoise && second.isNoise(correlation, meanEdge)) || isRelief;
     if (estimate.isUnderShape || !isLong) {
         estimate.size = 1.0;
-        estimate.height = estimate.isUnderShape ? second.height : noise[0];
+        // A shape adds to both; creases more to the second residuals.
+        estimate.height = estimate.isUnderShape ? second.height : std::min(second.height, noise[0]);
         if (isShort) estimate.height = std::min(estimate.height, lowest);
     }
     // Of second residuals along crests: at least -.22 on clean ribs of six edges, which fall, and
