@@ -82,7 +82,8 @@ TEST(Measures, OneLowVertexAndAFlatBaseAreNoMissingData) {
     EXPECT_EQ(fillerOf(terrain({100}, -9999).V, terrain({}, 0).F).vertices, 0);
     EXPECT_EQ(fillerOf(terrain({}, 0).V, terrain({}, 0).F).vertices, 0);
     Mesh plane = terrain({}, 0);  // in single precision: no missing data, only round-off
-    for (Index i = 0; i < plane.V.rows(); ++i) plane.V(i, 2) = i < 2 ? -5e-7 : 1e-8 * (i % 9);
+    for (Index i = 0; i < plane.V.rows(); ++i)
+        plane.V(i, 2) = i < 2 ? -5e-7 : 1e-8 * static_cast<double>(i % 9);
     EXPECT_EQ(fillerOf(plane.V, plane.F).vertices, 0);
     Mesh square{Vertices(4, 3), Faces(2, 3)};
     square.V << 0, 0, 0, 1, 1e-7, 0, 1, 1, 0, 0, 1, 0;
