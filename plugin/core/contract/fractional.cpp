@@ -1,10 +1,7 @@
 #include <algorithm>
 #include <cmath>
-#include <iomanip>
-#include <sstream>
 #include <string>
 #include <utility>
-#include <vector>
 
 #include "core/contract/common_fields.h"
 #include "core/contract/filters.h"
@@ -12,8 +9,6 @@
 #include "core/contract/surface_report.h"
 #include "core/contract/transfer_fields.h"
 #include "core/filter/fractional_filter.h"
-#include "core/mesh/creases.h"
-#include "core/mesh/surface.h"
 #include "core/support/errors.h"
 
 namespace spectral {
@@ -170,39 +165,6 @@ bool isDefaultFeatureSize(double size, const MeshLengths& mesh) {
     return std::abs(size - usual) <= kRounding * usual;
 }
 
-/// Warns of sharp edges that a filter rounds, as it was not told to keep them: where two of them
-/// follow each other, and move far more than half of the rest.
-std::vector<std::string> creaseWarnings(const FilterInput& input, const Vertices& after,
-                                        double diagonal) {
-    constexpr double kSharp = 50.0;  // degrees between planes
-    constexpr double kMore = 30.0;   // a statue's curls 15 times, a part by CAD 99, a wing 115
-    constexpr std::size_t kFewest = 10;
-    const Surface surface = joinedSurface(input.V, input.F);
-    std::vector<int> edges(surface.vertex.size(), 0);
-    for (const auto& [i, j] : creaseEdges(surface.X, surface.F, kSharp)) {
-        ++edges[i];
-        ++edges[j];
-    }
-    std::vector<double> on, off;
-    double squares = 0.0;
-    for (std::size_t i = 0; i < edges.size(); ++i) {
-        const Index vertex = surface.vertex[i];
-        const double moved = (after.row(vertex) - input.V.row(vertex)).norm();
-        (edges[i] == 2 ? on : off).push_back(moved);
-        if (edges[i] == 2) squares += moved * moved;
-    }
-    if (on.size() < kFewest || off.empty()) return {};
-    const auto middle = off.begin() + static_cast<std::ptrdiff_t>(off.size() / 2);
-    std::nth_element(off.begin(), middle, off.end());
-    if (!(std::sqrt(squares / static_cast<double>(on.size())) > kMore * *middle)) return {};
-    const double most = *std::max_element(on.begin(), on.end());
-    std::ostringstream text;
-    text << std::setprecision(2) << on.size() << " vertices along sharp edges moved by up to "
-         << most << " (" << 100.0 * most / diagonal
-         << " % of the diagonal), which rounds them: |crease_angle = 50| keeps them";
-    return {text.str()};
-}
-
 FilterOutput run(const FilterInput& input, const MeshLengths& mesh, const Values& given,
                  const Progress& progress) {
     static const Fields<FractionalCall> fields = fractionalFields();
@@ -227,11 +189,8 @@ FilterOutput run(const FilterInput& input, const MeshLengths& mesh, const Values
                                  call.result == Wanted::Details ? "Details found" : "");
     output.warnings = fractionalWarnings(options, result, mesh.diagonal);
     append(percentageWarnings(mesh), output.warnings);
-    if (!input.whole && call.result != Wanted::Details) {
+    if (!input.whole && call.result != Wanted::Details)
         append(periodicWarnings(input.V, input.F, result.V), output.warnings);
-        if (options.creaseAngle == 0.0)
-            append(creaseWarnings(input, result.V, mesh.diagonal), output.warnings);
-    }
     append(unusedWarnings(fields, call), output.warnings);
     if (call.result == Wanted::Details)
         output.details = input.V - result.V;

@@ -37,6 +37,10 @@ const Entries<FilterResult>& fractionalEntries() {
               [](const R& r) -> Value { return r.areaBefore; }},
              {"area_after", "of the filtered surface, length²",
               [](const R& r) -> Value { return r.areaAfter; }},
+             {"rounded_creases",
+              "largest displacement along sharp edges, which `crease_angle` 50 keeps, length; 0 "
+              "where they hardly moved farther than the rest",
+              [](const R& r) -> Value { return r.roundedCreases.largest; }},
              {"factorizations", "number of sparse factorizations",
               [](const R& r) -> Value { return r.factorizations; }},
              {"solves", "number of solves with one right-hand side",
@@ -299,6 +303,11 @@ std::string fractionalText(const FilterOptions& options, const FilterResult& res
          << surfaceText(result, "vertices fixed, on the boundary or a crease");
     if (options.preserveVolume)
         text << ", " << result.volumes.preserved << " with the volume preserved";
+    if (const RoundedCreases& creases = result.roundedCreases; creases.vertices > 0)
+        text << "\n  creases: rounded, " << creases.vertices
+             << " vertices along sharp edges moved by up to " << creases.largest << " ("
+             << 100.0 * creases.largest / diagonal
+             << " % of the diagonal); crease_angle = 50 keeps them";
     text << "\n  work: " << result.factorizations << " factorizations, " << result.solves
          << " solves, " << result.products << " products";
     if (result.lacksMemory) text << ", as a factorization does not fit in memory";

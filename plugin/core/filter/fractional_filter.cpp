@@ -13,7 +13,6 @@
 #include "core/filter/thin_parts.h"
 #include "core/laplacian/interior.h"
 #include "core/mesh/contacts.h"
-#include "core/mesh/creases.h"
 #include "core/mesh/displacement_limit.h"
 #include "core/mesh/measures.h"
 #include "core/mesh/mesh.h"
@@ -231,6 +230,8 @@ FilterResult fractionalFilter(const Vertices& V, const Faces& F, const FilterOpt
     static_cast<Movement&>(result) =
         movementOf(surface.X, surface.F, displacement, before, volumes);
     result.limitedShare = limited;
+    if (options.creaseAngle == 0.0 && !options.whole)
+        result.roundedCreases = roundedCreases(surface.X, surface.F, displacement);
     static_cast<Work&>(result) = evaluate.work();
     result.V = moved(V, surface, displacement);
     result.maxDisplacement = std::max(result.maxDisplacement, largestAtSeams(V, result.V, surface));

@@ -7,6 +7,7 @@
 #include "core/laplacian/interior.h"
 #include "core/laplacian/laplacian_builder.h"
 #include "core/laplacian/vertex_weight.h"
+#include "core/mesh/creases.h"
 #include "core/mesh/mesh.h"
 #include "core/mesh/movement.h"
 #include "core/mesh/surface.h"
@@ -62,7 +63,8 @@ struct FilterResult : SurfaceCounts, Movement, Work {
     double cutoffFrequency = 0.0;  ///< omega_c, radians per length unit.
     double featureSize = 0.0;      ///< 2 pi / omega_c, length units.
     double areaBefore = 0.0, areaAfter = 0.0;
-    double meanEdge = 0.0;      ///< Mean edge length of the input.
+    RoundedCreases roundedCreases;  ///< None with creases that stay.
+    double meanEdge = 0.0;          ///< Mean edge length of the input.
     double shrunkenPart = 0.0;  ///< Fraction of the input surface at vertices that keep less than a
                                 ///< tenth of their area: it shrinks to lines and points.
     double accuracy = 0.0;      ///< Requested relative accuracy of the evaluation, all steps.

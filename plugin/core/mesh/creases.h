@@ -18,4 +18,14 @@ std::vector<std::array<Index, 2>> creaseEdges(const Vertices& X, const Faces& F,
 /// Whether each vertex is on a crease, n flags.
 std::vector<bool> creaseVertices(const Vertices& X, const Faces& F, double angle);
 
+/// Sharp edges that a filter has rounded.
+struct RoundedCreases {
+    Index vertices = 0;    ///< On them, but for corners.
+    double largest = 0.0;  ///< Displacement of these, length units.
+};
+
+/// Looks along sharp edges that follow each other; none where they moved about as far as the rest.
+/// @param X, displacement  n x 3.
+RoundedCreases roundedCreases(const Vertices& X, const Faces& F, const Vertices& displacement);
+
 }  // namespace spectral

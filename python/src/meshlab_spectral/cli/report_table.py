@@ -62,6 +62,9 @@ def _rows(report: dict[str, Any]) -> list[tuple[str, str]]:
         ("Largest displacement", f"{report['max_displacement']:.4g}"),
         ("RMS displacement", f"{report['rms_displacement']:.4g}"),
     ]
+    if report.get("rounded_creases"):
+        told = f"by up to {report['rounded_creases']:.2g}; --crease-angle 50 keeps them"
+        rows.append(("Sharp edges rounded", told))
     if report.get("limited_share"):
         rows.append(("Bound reached at", f"{100 * report['limited_share']:.2g} % of the surface"))
     if report.get("has_volume"):
