@@ -39,6 +39,11 @@ class Worker:
             start_new_session=True,
         )
 
+    @property
+    def id(self) -> int:
+        """Of its process."""
+        return self._process.pid
+
     def suits(self) -> bool:
         """Whether Python would start now as it did in the worker."""
         return self._process.poll() is None and self._settings == _python_settings()
@@ -58,7 +63,9 @@ class Worker:
             raise subprocess.TimeoutExpired(words, timeout)
         code, *texts = json.loads(self._process.stdout.readline())
         output, errors = (
-            io.TextIOWrapper(io.BytesIO(text.encode("utf-8", "surrogateescape"))).read()
+            io.TextIOWrapper(
+                io.BytesIO(text.encode("utf-8", "surrogateescape")), encoding="utf-8"
+            ).read()
             for text in texts
         )
         return subprocess.CompletedProcess(words, code, output, errors)
@@ -73,6 +80,11 @@ def _python_settings() -> dict[str, str]:
 
 
 _workers: list[Worker] = []
+
+
+def is_worker(process: int) -> bool:
+    """Whether a process is that of `worker`, which stays."""
+    return any(process == one.id for one in _workers)
 
 
 def worker() -> Worker | None:

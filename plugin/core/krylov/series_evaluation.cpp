@@ -26,6 +26,10 @@ constexpr double kRoundOff = 1e-15;
 /// to 66 (Butterworth of order 8 on a dragon) series took less time; gains that jump take hundreds.
 constexpr int kMaxSolves = 80;
 
+/// Share of the accuracy for round-off, and for gains between the nodes; half is left for the
+/// terms.
+constexpr double kShareOfOthers = 0.25;
+
 /// Number of gains at once: each has a sum that every term is added to.
 constexpr std::size_t kMaxGains = 3;
 
@@ -108,7 +112,7 @@ std::optional<GainSeries> seriesOf(const Gain& gain, const KrylovOperator& S,
                          mismatch * std::min(details.norm / details.shape, std::abs(t - t0)));
         }
         const int length = result.series.lengthFor(target);
-        if (length <= nodes / 2 && result.mismatch <= accuracy) {
+        if (length <= nodes / 2 && result.mismatch <= kShareOfOthers * accuracy) {
             if (most && length > *most) return {};
             return result;
         }
@@ -422,14 +426,16 @@ std::optional<std::vector<FullSpectrumResult>> evaluate(
         series.push_back(*std::move(found));
     }
     const Errors errors(details, options, Operator::kRoundOffOfTerm);
-    constexpr double kShareOfRoundOff = 0.25;  // of the accuracy
-    for (const GainSeries& gain : series)
-        if (!mayRoundOff && errors.others(gain, details.largest) - gain.mismatch >
-                                kShareOfRoundOff * options.accuracy)
-            return {};
+    double left = options.accuracy;
+    for (const GainSeries& gain : series) {
+        const double others = errors.others(gain, details.largest);
+        if (!mayRoundOff && others - gain.mismatch > kShareOfOthers * options.accuracy) return {};
+        left = std::min(left, options.accuracy - others);
+    }
     double largest = details.largest;
     // At the vertices the bound is often reached, and steps add up: one term more, of some 12.
-    const double truncated = options.atEveryVertex ? 0.25 * options.accuracy : options.accuracy;
+    const double truncated =
+        options.atEveryVertex ? 0.25 * options.accuracy : std::max(left, 0.5 * options.accuracy);
     const int count = terms.add(series, errors, truncated, largest, progress);
 
     std::vector<FullSpectrumResult> results(gains.size());

@@ -21,7 +21,7 @@ import numpy as np
 import psutil
 import pytest
 from batches import REPORT, contents, make_meshes, records, wait_until
-from commands import PRECIOUS, command
+from commands import PRECIOUS, command, is_worker
 from helpers import filter_arrays, percent
 from meshlab_spectral import (
     BatchError,
@@ -127,7 +127,7 @@ def test_a_file_that_kills_its_process_again_and_again_fails_alone(
 
 def children() -> list[psutil.Process]:
     """Return the child processes of this one, also those that have ended but are not reaped."""
-    return psutil.Process().children(recursive=True)
+    return [one for one in psutil.Process().children(recursive=True) if not is_worker(one.pid)]
 
 
 def test_stopping_the_iteration_ends_the_workers(meshes: Path, tmp_path: Path) -> None:

@@ -134,11 +134,11 @@ def test_the_death_of_the_working_process_is_reported(long_run: subprocess.Popen
 
 def test_progress_is_shown_on_a_terminal_only(cow: Path, tmp_path: Path) -> None:
     # Enough steps that some are seen, however fast they are.
-    arguments = ["filter", str(cow), str(tmp_path / "out.ply"), "--steps", "100"]
+    arguments = ["filter", str(cow), str(tmp_path / "out.ply"), "--steps", "400"]
     arguments.append("--overwrite")
     code, stdout, shown = command_on_terminal(*arguments)
     assert code == 0
-    steps = [int(step) for step in re.findall(rb"step (\d+) of 100", shown)]
+    steps = [int(step) for step in re.findall(rb"step (\d+) of 400", shown)]
     assert steps
     assert steps == sorted(steps)
     assert b"step" not in stdout
