@@ -43,6 +43,7 @@ class Seen(NamedTuple):
 def by_trimesh(path: Path) -> Seen:
     if path.suffix == ".3mf":
         pytest.importorskip("networkx")
+        pytest.importorskip("lxml")
     mesh = trimesh.load(path, process=False, force="mesh")
     normals = mesh._cache.cache.get("vertex_normals")
     colours = None
