@@ -21,7 +21,7 @@ case $kind in
         export ASAN_OPTIONS=detect_leaks=0:alloc_dealloc_mismatch=0
         export UBSAN_OPTIONS=print_stacktrace=1
         flags='-fsanitize=address,undefined -fno-sanitize=vptr -fno-sanitize-recover=undefined'
-        tests=(tests/python/core tests/python/documents
+        tests=(tests/python/core tests/python/formats
             -k 'not mesh_set and not command and not same_bits and not memory')
         library=libasan.so ;;
     thread)

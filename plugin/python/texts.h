@@ -6,7 +6,7 @@ namespace spectral::python {
 
 namespace nb = nanobind;
 
-/// Adds what `documents` reads and patches files with: numbers in text, elements of XML.
+/// Adds what `formats` reads and patches files with: numbers in text, elements of XML.
 void addTexts(nb::module_& module);
 
 }  // namespace spectral::python

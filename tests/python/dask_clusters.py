@@ -12,7 +12,7 @@ from pathlib import Path
 import psutil
 from batches import alive, wait_until
 
-CHILD = "meshlab_spectral.process.child"
+CHILD = "meshlab_spectral.child"
 
 
 @contextlib.contextmanager

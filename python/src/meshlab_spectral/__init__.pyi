@@ -2,8 +2,6 @@
 from meshlab_spectral.batch.files import denoise_files as denoise_files
 from meshlab_spectral.batch.files import filter_files as filter_files
 from meshlab_spectral.batch.jobs import FileResult as FileResult
-from meshlab_spectral.batch.one_file import denoise_file as denoise_file
-from meshlab_spectral.batch.one_file import filter_file as filter_file
 from meshlab_spectral.errors import ArgumentError as ArgumentError
 from meshlab_spectral.errors import ArrayError as ArrayError
 from meshlab_spectral.errors import BatchError as BatchError
@@ -55,5 +53,7 @@ from meshlab_spectral.plugin.limits import set_memory_limit as set_memory_limit
 from meshlab_spectral.plugin.limits import set_threads as set_threads
 from meshlab_spectral.plugin.limits import threads as threads
 from meshlab_spectral.plugin.loading import load as load
+from meshlab_spectral.tiles.one_file import denoise_file as denoise_file
+from meshlab_spectral.tiles.one_file import filter_file as filter_file
 
 __version__: str

@@ -31,7 +31,7 @@ from meshlab_spectral import (
     filter_files,
     filter_mesh,
 )
-from meshlab_spectral.process.parent import Answer, MeshLabProcess
+from meshlab_spectral.workers.process import Answer, MeshLabProcess
 
 
 def test_filter_mesh_is_the_filter(decimated: Callable[..., tuple[np.ndarray, np.ndarray]]) -> None:
@@ -262,7 +262,7 @@ def test_a_slow_transfer_does_not_hold_up_the_end(
 
     memory = fsspec.filesystem("memory")
     monkeypatch.setattr(type(memory), "get_file", get_slowly)
-    monkeypatch.setattr("meshlab_spectral.batch.engine._SECONDS_TO_END", 0.5)
+    monkeypatch.setattr("meshlab_spectral.workers.pool._SECONDS_TO_END", 0.5)
     monkeypatch.setattr(tempfile, "tempdir", str(tmp_path / "tmp"))
     (tmp_path / "tmp").mkdir()
     for name in ("a.ply", "b.ply", "c.ply"):

@@ -14,7 +14,7 @@ from batches import REPORT, alive, below, contents, make_meshes, records, start_
 from commands import command, messages_in
 
 MESHES = 12
-CHILD = "meshlab_spectral.process.child"
+CHILD = "meshlab_spectral.child"
 # Long enough that the batch is still working when a busy machine delivers the signal late.
 OPTIONS = ["--steps", 600, "--workers", 2]
 

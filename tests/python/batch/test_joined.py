@@ -11,7 +11,7 @@ from batches import REPORT, records
 from commands import command
 from meshlab_spectral import OptionError, filter_mesh
 from meshlab_spectral.batch.files import filter_files
-from meshlab_spectral.documents import ply
+from meshlab_spectral.formats import ply
 from tiled_meshes import Array, Indices, write_ply
 
 OPTIONS: dict[str, Any] = {"feature_size": 8.0, "steps": 1}

@@ -13,9 +13,9 @@ from hypothesis import strategies as st
 from meshlab_spectral import InputError
 from meshlab_spectral.batch.inputs import Input
 from meshlab_spectral.batch.outputs import check_pattern, plan_outputs
-from meshlab_spectral.documents.names import ending_of
 from meshlab_spectral.errors import FormatError
-from meshlab_spectral.files.formats import READABLE, WRITABLE
+from meshlab_spectral.files.extensions import READABLE, WRITABLE
+from meshlab_spectral.formats.names import ending_of
 
 NAMES = st.text("ab.{}_ é", min_size=1, max_size=8).filter(lambda name: name.strip(". "))
 FOLDERS = st.sampled_from(["", "x", "x/y"])

@@ -16,10 +16,10 @@ from commands import PRECIOUS, arrays_of
 from meshlab_spectral import FilterOptions
 from meshlab_spectral.batch import storage
 from meshlab_spectral.batch.jobs import Job
-from meshlab_spectral.batch.processes import Processes, ProcessesEndedError
 from meshlab_spectral.batch.task import run_job
 from meshlab_spectral.errors import BatchError
-from meshlab_spectral.process.parent import NO_LIMITS, JobLimits, MeshLabProcess
+from meshlab_spectral.workers.process import NO_LIMITS, JobLimits, MeshLabProcess
+from meshlab_spectral.workers.processes import Processes, ProcessesEndedError
 
 
 @pytest.fixture
@@ -80,7 +80,7 @@ def pid_after(processes: Processes, job: Job) -> int | None:
 def test_a_process_is_replaced_after_its_share_of_meshes(
     processes: Processes, cow: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("meshlab_spectral.batch.processes._JOBS_PER_PROCESS", 2)
+    monkeypatch.setattr("meshlab_spectral.workers.processes._JOBS_PER_PROCESS", 2)
     pids = [pid_after(processes, job_of(cow, tmp_path / f"{k}.ply")) for k in range(4)]
     assert pids[1] is pids[3] is None
     assert pids[0] != pids[2]

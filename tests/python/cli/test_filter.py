@@ -15,8 +15,8 @@ import trimesh
 from commands import arrays_of, assert_fails, command, messages_in, write_ply
 from helpers import FILTER, lower_part, mesh_set_of, percent
 from meshlab_spectral import FilterOptions, OptionError
-from meshlab_spectral.documents.document import Part
 from meshlab_spectral.files.region_vertices import chosen_parts
+from meshlab_spectral.formats.document import Part
 
 
 def test_output_is_what_the_filter_computes(cow: Path, tmp_path: Path) -> None:

@@ -18,9 +18,9 @@ import pymeshlab
 import pytest
 from helpers import filter_file
 from meshlab_spectral import DenoiseOptions, FilterOptions
-from meshlab_spectral.documents.opening import open_document
 from meshlab_spectral.errors import MeshFileError, OptionError
 from meshlab_spectral.files.meshes import load_arrays
+from meshlab_spectral.formats.opening import open_document
 from numpy.typing import NDArray
 from plyfile import PlyData
 

@@ -13,8 +13,8 @@ from fuzz.damages import Damage, damaged, damages
 from fuzz.runs import as_many_as
 from hypothesis import given
 from hypothesis import strategies as st
-from meshlab_spectral.documents.opening import open_document
 from meshlab_spectral.errors import MeshFileError
+from meshlab_spectral.formats.opening import open_document
 
 # Readers of VTK and USD may end the process: the commands say so (below).
 ENDING = (".vtk", ".vtp", ".usda", ".usdz")

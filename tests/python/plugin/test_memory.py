@@ -33,7 +33,7 @@ from meshlab_spectral.plugin.limits import (
     memory_remedy,
     name_memory_limit,
 )
-from meshlab_spectral.process.parent import JobLimits, MeshLabProcess
+from meshlab_spectral.workers.process import JobLimits, MeshLabProcess
 
 MEBIBYTE = 2**20
 

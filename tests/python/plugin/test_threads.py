@@ -9,9 +9,9 @@ from typing import Any
 import numpy as np
 import pytest
 from meshlab_spectral import FilterError, OptionError, filter_mesh, set_threads, threads
-from meshlab_spectral.batch.processes import Processes
 from meshlab_spectral.plugin.limits import THREADS, threads_each
-from meshlab_spectral.process.parent import NO_LIMITS
+from meshlab_spectral.workers.process import NO_LIMITS
+from meshlab_spectral.workers.processes import Processes
 
 
 class NotStartedError(Exception):
@@ -66,7 +66,7 @@ def test_processes_share_the_threads(monkeypatch: pytest.MonkeyPatch, tmp_path: 
         environments.append(env)
         raise NotStartedError
 
-    monkeypatch.setattr("meshlab_spectral.process.parent.subprocess.Popen", start)
+    monkeypatch.setattr("meshlab_spectral.workers.process.subprocess.Popen", start)
     with pytest.raises(NotStartedError), Processes(4, NO_LIMITS, tmp_path).one():
         pass
     assert [environment[THREADS] for environment in environments] == ["2"]

@@ -15,10 +15,10 @@ from batches import wait_until
 from commands import assert_fails, command
 from dask_clusters import dask_cluster, meshlab_processes
 from meshlab_spectral import BatchError, FilterOptions, MeshFileError
-from meshlab_spectral.batch import cluster as cluster_module
-from meshlab_spectral.batch import tile_jobs
-from meshlab_spectral.batch.tiles import filter_in_tiles
 from meshlab_spectral.errors import FilterError, MeshError
+from meshlab_spectral.tiles import tile_jobs
+from meshlab_spectral.tiles.run import filter_in_tiles
+from meshlab_spectral.workers import cluster as cluster_module
 from tiled_meshes import bumpy_torus, write_ply
 
 SMALL = FilterOptions(feature_size="6e", passes=1)

@@ -11,7 +11,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from meshlab_spectral.batch import storage
-from meshlab_spectral.batch.engine import Workers, run_jobs
 from meshlab_spectral.batch.jobs import FileResult, Job
 from meshlab_spectral.batch.plan import Batch, plan_batch
 from meshlab_spectral.batch.report import Report, Tally
@@ -20,6 +19,7 @@ from meshlab_spectral.extras import check_extras
 from meshlab_spectral.filters.keywords import takes_options
 from meshlab_spectral.filters.option_types import AnyOptions
 from meshlab_spectral.filters.options import DenoiseOptions, FilterOptions
+from meshlab_spectral.workers.pool import Workers, run_jobs
 
 if TYPE_CHECKING:
     from typing_extensions import Unpack
@@ -155,7 +155,7 @@ def _results(
             yield from results
         return
     from meshlab_spectral.batch.joined import run_joined
-    from meshlab_spectral.batch.local import local_workers
+    from meshlab_spectral.workers.local import local_workers
 
     with (
         local_workers(run_joined, 1, batch.settings.memory_limit) as one,
@@ -170,9 +170,9 @@ def _workers(settings: Settings) -> AbstractContextManager[Workers[Job, FileResu
     from meshlab_spectral.batch.task import run_job
 
     if settings.scheduler is not None:
-        from meshlab_spectral.batch.cluster import workers_at
+        from meshlab_spectral.workers.cluster import workers_at
 
         return workers_at(settings.scheduler, run_job)
-    from meshlab_spectral.batch.local import local_workers
+    from meshlab_spectral.workers.local import local_workers
 
     return local_workers(run_job, settings.workers, settings.memory_limit)

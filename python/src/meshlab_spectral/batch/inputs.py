@@ -11,16 +11,16 @@ from pathlib import Path
 from typing import Any
 
 from meshlab_spectral.batch.storage import file_system, is_url, located
-from meshlab_spectral.documents.names import (
+from meshlab_spectral.errors import InputError
+from meshlab_spectral.files.extensions import SEARCHED
+from meshlab_spectral.files.whole_files import resolved
+from meshlab_spectral.formats.names import (
     QUADRILATERALS,
     TRIANGLES,
     ending_of,
     holds_values,
     is_free_surfer,
 )
-from meshlab_spectral.errors import InputError
-from meshlab_spectral.files.formats import SEARCHED
-from meshlab_spectral.files.whole_files import resolved
 
 
 @dataclass(frozen=True)

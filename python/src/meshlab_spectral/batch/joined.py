@@ -9,11 +9,11 @@ from typing import Any
 
 from meshlab_spectral.batch import storage
 from meshlab_spectral.batch.jobs import FileResult, Job
-from meshlab_spectral.batch.processes import Processes
-from meshlab_spectral.batch.task import attempt, digests
+from meshlab_spectral.batch.task import digests
 from meshlab_spectral.errors import SpectralError
 from meshlab_spectral.files.whole_files import file_trouble
 from meshlab_spectral.plugin.versions import versions
+from meshlab_spectral.workers.processes import Processes
 
 
 def run_joined(processes: Processes, jobs: Sequence[Job]) -> list[FileResult]:
@@ -37,7 +37,7 @@ def run_joined(processes: Processes, jobs: Sequence[Job]) -> list[FileResult]:
                 "scratches": [str(path) for path in scratches],
                 "verbose": False,
             }
-            answer = attempt(processes, work, jobs[0].seconds, common)
+            answer = processes.run(work, jobs[0].seconds, common)
             report = answer.report
             for one, scratch, largest in zip(own, scratches, report.pop("largest"), strict=True):
                 one |= digests(scratch) | {"outcome": "filtered" if largest else "unchanged"}

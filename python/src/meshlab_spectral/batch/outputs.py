@@ -12,10 +12,10 @@ from pathlib import Path
 
 from meshlab_spectral.batch.inputs import Input
 from meshlab_spectral.batch.storage import is_url, joined
-from meshlab_spectral.documents.names import ending_of
-from meshlab_spectral.documents.opening import PATCHED
 from meshlab_spectral.errors import FormatError, InputError
-from meshlab_spectral.files.formats import FALLBACK, POINTS_ONLY, WRITABLE
+from meshlab_spectral.files.extensions import FALLBACK, POINTS_ONLY, WRITABLE
+from meshlab_spectral.formats.names import ending_of
+from meshlab_spectral.formats.opening import PATCHED
 
 DEFAULT_PATTERN = "{stem}"
 _FIELDS = ("stem", "ending", "folder")

@@ -3,26 +3,19 @@
 from __future__ import annotations
 
 import time
-from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 from meshlab_spectral.batch import storage
 from meshlab_spectral.batch.jobs import FileResult, Job, Outcome
-from meshlab_spectral.batch.processes import Processes, ProcessesEndedError
 from meshlab_spectral.errors import (
     BatchError,
-    MemoryLimitError,
-    ProcessDiedError,
     ProcessStartError,
     SpectralError,
 )
 from meshlab_spectral.files.whole_files import file_trouble, side_files
 from meshlab_spectral.plugin.versions import versions
-from meshlab_spectral.process.parent import Answer
-
-# If its process dies, a mesh gets a second try in a new one: an earlier mesh may be to blame.
-ATTEMPTS = 2
+from meshlab_spectral.workers.processes import Processes, ProcessesEndedError
 
 
 def run_job(processes: Processes, job: Job) -> FileResult:
@@ -39,11 +32,11 @@ def run_job(processes: Processes, job: Job) -> FileResult:
             result["input_sha256"] = storage.digest(source)
             work = job.work | {"source": str(source), "verbose": False}
             if job.target is None:
-                answer = attempt(processes, work, job.seconds, result)
+                answer = processes.run(work, job.seconds, result)
             else:
                 with storage.writing(job.target, job.overwrite, processes.folder) as scratch:
                     work["scratch"] = str(scratch)
-                    answer = attempt(processes, work, job.seconds, result)
+                    answer = processes.run(work, job.seconds, result)
                     written = digests(scratch)
                 result |= written
         result["outcome"] = _outcome(job, answer.report)
@@ -87,21 +80,3 @@ def digests(scratch: Path) -> dict[str, Any]:
             for path in side_files(scratch)
         },
     }
-
-
-def attempt(
-    processes: Processes, work: dict[str, Any], seconds: float | None, result: dict[str, Any]
-) -> Answer:
-    """Do the work of a job, twice if its process dies; count that and the waiting in `result`."""
-    limits = replace(processes.limits, seconds=seconds)
-    for attempt in range(1, ATTEMPTS + 1):
-        result["attempts"] = attempt
-        begin = time.monotonic()
-        with processes.one() as process:
-            result["waited"] += time.monotonic() - begin
-            try:
-                return process.run(work, limits=limits)
-            except (ProcessDiedError, MemoryLimitError):
-                if attempt == ATTEMPTS:
-                    raise
-    raise AssertionError("unreachable")

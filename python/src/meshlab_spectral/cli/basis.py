@@ -12,9 +12,9 @@ from meshlab_spectral.cli.filter_options import OneMesh, Source, with_options
 from meshlab_spectral.cli.messages import errors_reported, print_result
 from meshlab_spectral.cli.progress import progress_shown
 from meshlab_spectral.figures.harmonics import check_modes, draw_basis_file
-from meshlab_spectral.files.formats import check_ending
+from meshlab_spectral.files.extensions import check_ending
 from meshlab_spectral.filters.options import BasisOptions
-from meshlab_spectral.process.single_file import write_in_child
+from meshlab_spectral.workers.single_file import write_in_child
 
 
 @with_options(BasisOptions)

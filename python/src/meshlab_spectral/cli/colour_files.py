@@ -11,7 +11,7 @@ import typer
 
 from meshlab_spectral.errors import OptionError
 from meshlab_spectral.extras import check_extras
-from meshlab_spectral.files.formats import check_ending
+from meshlab_spectral.files.extensions import check_ending
 from meshlab_spectral.files.whole_files import check_target, writing_whole
 
 _PICTURE = typer.Option(

@@ -23,7 +23,7 @@ from meshlab_spectral.figures.comparison import (
     write_comparison,
 )
 from meshlab_spectral.files.comparison import PERCENTILES, Comparison
-from meshlab_spectral.process.single_file import compare_in_child
+from meshlab_spectral.workers.single_file import compare_in_child
 
 _LABELS = {
     "displacement": "Displacement",

@@ -13,7 +13,7 @@ from meshlab_spectral.cli.messages import errors_reported, print_warning
 from meshlab_spectral.cli.progress import progress_shown
 from meshlab_spectral.cli.report_table import table_of
 from meshlab_spectral.plugin.versions import versions
-from meshlab_spectral.process.single_file import measure_in_child
+from meshlab_spectral.workers.single_file import measure_in_child
 
 
 def info_command(source: Source, mesh: OneMesh = None, as_json: AsJson = False) -> None:

@@ -12,10 +12,10 @@ from rich.console import Console
 from rich.table import Table
 
 from meshlab_spectral.cli.interrupts import EXIT_INTERRUPTED, raise_interrupts
-from meshlab_spectral.documents.names import visible
 from meshlab_spectral.errors import FormatError, InputError, OptionError, SpectralError
-from meshlab_spectral.files.formats import POINTS_ONLY
-from meshlab_spectral.process.parent import LOG
+from meshlab_spectral.files.extensions import POINTS_ONLY
+from meshlab_spectral.formats.names import visible
+from meshlab_spectral.workers.process import LOG
 
 EXIT_FAILED, EXIT_USAGE = 1, 2
 _LONGEST = 5000  # characters of a message: two paths of Linux' 4,096 and more are rare

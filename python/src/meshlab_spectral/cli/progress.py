@@ -24,7 +24,7 @@ from rich.text import Text
 
 from meshlab_spectral.cli.messages import MESSAGES, VERBOSITY, one_line, print_message
 from meshlab_spectral.filters.progress import lines_now_and_then, terminal_bar
-from meshlab_spectral.process.parent import ProgressCallback
+from meshlab_spectral.workers.process import ProgressCallback
 
 if TYPE_CHECKING:
     from meshlab_spectral.batch.jobs import FileResult

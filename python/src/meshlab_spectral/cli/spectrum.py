@@ -32,7 +32,7 @@ from meshlab_spectral.figures.spectrum import (
     feature_size_of,
     octave_gains,
 )
-from meshlab_spectral.files.formats import check_ending
+from meshlab_spectral.files.extensions import check_ending
 from meshlab_spectral.files.sources import check_source
 from meshlab_spectral.files.whole_files import writing_whole
 from meshlab_spectral.filters.options import (
@@ -44,7 +44,7 @@ from meshlab_spectral.filters.options import (
 from meshlab_spectral.filters.running import plain
 from meshlab_spectral.filters.spectrum import GeometrySpectrum
 from meshlab_spectral.plugin.versions import versions
-from meshlab_spectral.process.single_file import measure_in_child
+from meshlab_spectral.workers.single_file import measure_in_child
 
 # The options that the filter's curve and the spectrum depend on.
 SHOWN_OPTIONS = tuple(TransferKeywords.__annotations__)

@@ -29,13 +29,13 @@ from meshlab_spectral.cli.progress import progress_shown
 from meshlab_spectral.cli.report_table import table_of
 from meshlab_spectral.errors import MeshError, OptionError, SpectralError
 from meshlab_spectral.figures.texture import draw_texture, write_texture
-from meshlab_spectral.files.formats import check_ending
+from meshlab_spectral.files.extensions import check_ending
 from meshlab_spectral.files.region import Region
 from meshlab_spectral.files.whole_files import writing_whole
 from meshlab_spectral.filters.options import TextureOptions
 from meshlab_spectral.filters.texture import SurfaceTexture
 from meshlab_spectral.plugin.versions import versions
-from meshlab_spectral.process.single_file import texture_in_child
+from meshlab_spectral.workers.single_file import texture_in_child
 
 _BEARING = (10, 50, 90)
 

@@ -11,12 +11,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from meshlab_spectral.documents.document import joined
 from meshlab_spectral.errors import ArrayError
 from meshlab_spectral.extras import check_extras
 from meshlab_spectral.files.meshes import in_scene, load_parts
 from meshlab_spectral.filters.arrays import lumped_areas, mesh_arrays
 from meshlab_spectral.filters.representations import brief, line, table
+from meshlab_spectral.formats.document import joined
 
 Array = NDArray[np.float64]
 Arrays = tuple[Array, NDArray[Any]]

@@ -9,12 +9,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from meshlab_spectral import _core
-from meshlab_spectral.documents.document import Part, joined
 from meshlab_spectral.errors import MeshFileError
 from meshlab_spectral.files.meshes import StageCallback, load_parts
 from meshlab_spectral.files.meshlab_files import read_with_meshlab
 from meshlab_spectral.filters.options import SpectrumOptions
 from meshlab_spectral.filters.running import plain, run
+from meshlab_spectral.formats.document import Part, joined
 from meshlab_spectral.plugin.loading import DENOISE_NAME, load
 
 _OF_SURFACE = ("components", "joined_vertices", "unreferenced_vertices")

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from meshlab_spectral.errors import OptionError
-from meshlab_spectral.files.formats import is_same_format
+from meshlab_spectral.files.extensions import is_same_format
 from meshlab_spectral.files.meshes import (
     StageCallback,
     load_parts,

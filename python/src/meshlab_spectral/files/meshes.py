@@ -1,6 +1,6 @@
 """Mesh files: reading them, filtering their meshes, writing them.
 
-If the format stays the same, the file is patched (`documents`): only coordinates and normals
+If the format stays the same, the file is patched (`formats`): only coordinates and normals
 change. Conversions, scripts, and formats that only MeshLab knows go through MeshLab.
 """
 
@@ -15,13 +15,8 @@ from typing import Any
 
 import numpy as np
 
-from meshlab_spectral.documents.document import Array, Document, Indices, Part, joined
-from meshlab_spectral.documents.names import shown
-from meshlab_spectral.documents.opening import format_of, open_document
-from meshlab_spectral.documents.placement import IDENTITY, Placement
-from meshlab_spectral.documents.side_files import copy_side_files
 from meshlab_spectral.errors import FilterError, FormatError, MeshFileError, OptionError
-from meshlab_spectral.files.formats import is_same_format
+from meshlab_spectral.files.extensions import is_same_format
 from meshlab_spectral.files.meshlab_files import (
     DUMMY,
     check_writable,
@@ -41,6 +36,11 @@ from meshlab_spectral.files.touching import moved_alike, pieces
 from meshlab_spectral.filters.mesh_objects import PYMESHLAB
 from meshlab_spectral.filters.option_types import Options
 from meshlab_spectral.filters.running import Run, run
+from meshlab_spectral.formats.document import Array, Document, Indices, Part, joined
+from meshlab_spectral.formats.names import shown
+from meshlab_spectral.formats.opening import format_of, open_document
+from meshlab_spectral.formats.placement import IDENTITY, Placement
+from meshlab_spectral.formats.side_files import copy_side_files
 from meshlab_spectral.plugin.loading import load
 from meshlab_spectral.plugin.mesh_sets import DETAILS, NOISE_HEIGHT, mesh_set_of, write
 

@@ -14,16 +14,16 @@ from urllib.parse import unquote
 
 import numpy as np
 
-from meshlab_spectral.documents.budget import Budget, guarded
-from meshlab_spectral.documents.causes import other_kind
-from meshlab_spectral.documents.document import Document
-from meshlab_spectral.documents.names import shown
-from meshlab_spectral.documents.opening import PATCHED
-from meshlab_spectral.documents.side_files import beside, is_outside
-from meshlab_spectral.documents.stl import HEADER, TRIANGLE
 from meshlab_spectral.errors import FormatError, MeshFileError
-from meshlab_spectral.files.formats import WRITABLE
+from meshlab_spectral.files.extensions import WRITABLE
 from meshlab_spectral.files.whole_files import USUAL_FORMATS, resolved
+from meshlab_spectral.formats.budget import Budget, guarded
+from meshlab_spectral.formats.causes import other_kind
+from meshlab_spectral.formats.document import Document
+from meshlab_spectral.formats.names import shown
+from meshlab_spectral.formats.opening import PATCHED
+from meshlab_spectral.formats.side_files import beside, is_outside
+from meshlab_spectral.formats.stl import HEADER, TRIANGLE
 from meshlab_spectral.plugin.mesh_sets import reason_of
 
 # Formats in which MeshLab joins triangles back into the polygons that it has read.

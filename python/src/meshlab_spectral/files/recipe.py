@@ -10,11 +10,11 @@ from typing import Any
 
 import tomli_w
 
-from meshlab_spectral.documents.names import shown
 from meshlab_spectral.errors import InputError, OptionError
 from meshlab_spectral.files.whole_files import writing_whole
 from meshlab_spectral.filters.option_types import Length, Options
 from meshlab_spectral.filters.tables import TABLES
+from meshlab_spectral.formats.names import shown
 
 if sys.version_info >= (3, 11):
     import tomllib

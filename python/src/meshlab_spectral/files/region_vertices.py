@@ -11,10 +11,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from meshlab_spectral import _core
-from meshlab_spectral.documents.document import Array, Indices, Part
 from meshlab_spectral.errors import InputError, OptionError
 from meshlab_spectral.files.region import Region
 from meshlab_spectral.filters.option_types import Options
+from meshlab_spectral.formats.document import Array, Indices, Part
 
 Flags = NDArray[np.bool_]
 

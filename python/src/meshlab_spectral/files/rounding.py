@@ -7,8 +7,8 @@ from pathlib import Path
 
 import numpy as np
 
-from meshlab_spectral.documents.digits import in_single_precision, precision_warnings
-from meshlab_spectral.documents.document import Array
+from meshlab_spectral.formats.digits import in_single_precision, precision_warnings
+from meshlab_spectral.formats.document import Array
 
 
 def _decimals(numbers: Array) -> Array:

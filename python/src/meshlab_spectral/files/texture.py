@@ -7,13 +7,13 @@ from typing import Any
 
 import numpy as np
 
-from meshlab_spectral.documents.document import joined
 from meshlab_spectral.errors import MeshError
 from meshlab_spectral.files.meshes import StageCallback, in_scene, load_parts
 from meshlab_spectral.files.region import Region
 from meshlab_spectral.files.region_vertices import restricted
 from meshlab_spectral.filters.options import TextureOptions
 from meshlab_spectral.filters.texture import surface_texture
+from meshlab_spectral.formats.document import joined
 
 
 def texture_of(

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from meshlab_spectral import _core
 from meshlab_spectral._core import first_equal_rows
-from meshlab_spectral.documents.document import Array, Part, joined
+from meshlab_spectral.formats.document import Array, Part, joined
 
 
 def pieces(parts: Sequence[Part]) -> list[list[Part]]:

@@ -15,9 +15,9 @@ from typing import Any, TypeVar, cast
 import numpy as np
 from numpy.typing import NDArray
 
-from meshlab_spectral.documents.normals import are_normals, following_normals
 from meshlab_spectral.errors import ArgumentError, ArrayError
 from meshlab_spectral.filters.mesh_normals import followed
+from meshlab_spectral.formats.normals import are_normals, following_normals
 from meshlab_spectral.other_words import instead_of
 from meshlab_spectral.plugin.loading import FILTER_NAME
 from meshlab_spectral.plugin.mesh_sets import written_copy

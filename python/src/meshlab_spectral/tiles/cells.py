@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from meshlab_spectral.documents.document import Array, Indices
+from meshlab_spectral.formats.document import Array, Indices
 
 Tree = Any  # int | tuple[int, float, Tree, Tree], or lists from JSON
 

@@ -10,8 +10,8 @@ from typing import IO, Any
 
 import numpy as np
 
-from meshlab_spectral.documents import ply, stl
-from meshlab_spectral.documents.document import Array, Indices
+from meshlab_spectral.formats import ply, stl
+from meshlab_spectral.formats.document import Array, Indices
 from meshlab_spectral.tiles.plan import Workspace
 from meshlab_spectral.tiles.rows import MeshRows, StageCallback, chunks
 

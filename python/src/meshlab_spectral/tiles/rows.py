@@ -12,9 +12,9 @@ import numpy as np
 from numpy.typing import NDArray
 from plyfile import PlyData, PlyElement, PlyListProperty
 
-from meshlab_spectral.documents import ply, stl
-from meshlab_spectral.documents.document import Array, Indices
 from meshlab_spectral.errors import MeshFileError
+from meshlab_spectral.formats import ply, stl
+from meshlab_spectral.formats.document import Array, Indices
 from meshlab_spectral.tiles.bounds import UntiledError
 
 # Called with the current stage and the fraction of it that is done.

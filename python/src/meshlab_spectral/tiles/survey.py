@@ -7,9 +7,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from meshlab_spectral.documents import ply
-from meshlab_spectral.documents.document import Array
 from meshlab_spectral.errors import MeshFileError
+from meshlab_spectral.formats import ply
+from meshlab_spectral.formats.document import Array
 from meshlab_spectral.tiles.rows import MeshRows, StageCallback, chunks
 
 _SAMPLE = 400_000  # points, at most, by which the cells are chosen

@@ -13,12 +13,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from meshlab_spectral._core import first_equal_rows, vertex_areas
-from meshlab_spectral.documents import ply
-from meshlab_spectral.documents.document import Array, Indices
-from meshlab_spectral.documents.normals import following_normals
 from meshlab_spectral.errors import MeshError, MeshFileError
 from meshlab_spectral.filters.progress import Progress
 from meshlab_spectral.filters.running import TiledSurface, plain, run
+from meshlab_spectral.formats import ply
+from meshlab_spectral.formats.document import Array, Indices
+from meshlab_spectral.formats.normals import following_normals
 from meshlab_spectral.tiles.cells import near_cells
 from meshlab_spectral.tiles.plan import Workspace, write_whole
 from meshlab_spectral.tiles.rows import MeshRows, open_rows

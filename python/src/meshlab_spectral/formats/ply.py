@@ -1,0 +1,433 @@
+"""PLY files: vertex coordinates and normals are replaced, all other bytes are kept."""
+
+from __future__ import annotations
+
+import io
+import os
+import re
+import warnings
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import IO, Any
+
+import numpy as np
+from numpy.typing import NDArray
+from plyfile import PlyData, PlyElement, PlyListProperty, PlyParseError
+
+from meshlab_spectral._core import binary_numbers
+from meshlab_spectral.formats.causes import (
+    EndsEarlyError,
+    ForeignError,
+    MayEndEarlyError,
+    unreadable,
+    unsupported,
+)
+from meshlab_spectral.formats.digits import (
+    digits_for,
+    rounding_loss,
+    widening_warnings,
+)
+from meshlab_spectral.formats.document import (
+    Array,
+    Document,
+    Indices,
+    Part,
+    check_indices,
+    check_vertices,
+)
+from meshlab_spectral.formats.names import shown
+from meshlab_spectral.formats.normals import following_normals
+from meshlab_spectral.formats.polygons import strip_triangles, triangles
+from meshlab_spectral.formats.side_files import copy_side_files
+from meshlab_spectral.formats.text import BYTE_ORDER_MARK, Lines, lines_of, whole, write_patched
+
+AXES, NORMALS = ("x", "y", "z"), ("nx", "ny", "nz")
+_TEXTURE = re.compile(rb"(?m)^[ \t]*comment[ \t]+TextureFile[ \t]+(\S.*)")
+_COMMENT = re.compile(rb"(?m)^[ \t]*(comment|obj_info)[ \t]+(?!TextureFile|VCGLIB generated)\S")
+CORNERS = ("vertex_indices", "vertex_index")
+_KNOWN = {
+    "normals": set(NORMALS),
+    "colours": {"red", "green", "blue", "alpha", "diffuse_red", "diffuse_green", "diffuse_blue"},
+    "texture coordinates": {"s", "t", "u", "v", "texture_u", "texture_v", "texcoord", "texnumber"},
+    "quality": {"quality"},
+}
+_LARGEST_CUT = 1000  # largest ratio of what a file claims to hold to what it holds, as of STL
+SELECTED = 0x20  # VCG's flag
+# Elements, or properties: Gaussian splats have 62, with learned features some 1,000. The time of
+# plyfile grows with their square.
+_MOST_NAMES = 10_000
+_LONGEST_SIZE = 12  # characters of the size of a list, of at most 32 bits, and a blank
+_Rows = np.ndarray[Any, Any]
+_Table = dict[str, Any]  # the numbers of a property; for lists their sizes, and all items
+_Changes = dict[tuple[str, ...], tuple[Array, Array]]  # before and after
+_Columns = dict[tuple[str, ...], tuple[Indices | slice, Array]]  # in which rows, and what
+
+
+@dataclass(kw_only=True)
+class PlyDocument(Document):
+    """A PLY file with its bytes."""
+
+    content: bytes
+    header: bytes
+    ply: PlyData
+    rows: Indices | _Rows  # of the vertices: byte offsets of text lines, or binary rows
+    begin: int  # byte offset of binary rows
+    normals: Array | None
+    first: dict[tuple[str, ...], int]  # text: the words before coordinates, and before normals
+    places: dict[str, Indices] | None = None  # of binary numbers whose rows differ in length
+
+    def save(self, target: Path, moved: Sequence[Array]) -> list[str]:  # noqa: D102
+        before, (after,) = self.parts[0].vertices, moved
+        types = {self.ply["vertex"].ply_property(name).val_dtype for name in AXES}
+        loss = rounding_loss(before, after) if "f4" in types else None
+        if (after != before).any() and any(type_[0] != "f" for type_ in types):
+            loss = "the file has integers"
+        with target.open("wb") as file:
+            if (after != before).any():
+                self._write(file, after, bool(loss))
+            else:
+                file.write(self.content)
+        return widening_warnings(loss) + copy_side_files(self.path, target, self.side_files())
+
+    def side_files(self) -> list[str]:  # noqa: D102
+        return [os.fsdecode(name.rstrip()) for name in _TEXTURE.findall(self.header)]
+
+    def _write(self, file: IO[bytes], after: Array, is_wide: bool) -> None:
+        (part,), rows, start = self.parts, self.rows, len(self.header)
+        changes: _Changes = {AXES: (part.vertices, after)}
+        if self.normals is not None:
+            normals = following_normals(part.vertices, after, part.faces, self.normals)
+            changes[NORMALS] = self.normals, normals
+        file.write(widened(self.header) if is_wide else self.header)
+        if self.ply.text:
+            digits = digits_for(part.vertices, after)
+            words = [(rows, self.first[a], *pair, digits) for a, pair in changes.items()]
+            write_patched(file, self.content, words, start)
+        elif self.places is not None:
+            file.write(self._patched(changes, self.places, is_wide)[start:].data)
+        else:
+            content, end = memoryview(self.content), self.begin + rows.nbytes
+            columns: _Columns = {a: (slice(None), new) for a, (_, new) in changes.items()}
+            moved = with_columns(rows, columns, self.ply.byte_order if is_wide else None)
+            bytes_ = moved.view(np.uint8).data
+            file.writelines([content[start : self.begin], bytes_, content[end:]])
+
+    def _patched(
+        self, changes: _Changes, places: dict[str, Indices], is_wide: bool
+    ) -> NDArray[np.uint8]:
+        """Return the bytes of the file with new numbers in rows of several lengths."""
+        vertex, content = self.ply["vertex"], np.frombuffer(self.content, np.uint8).copy()
+        types = {name: vertex.ply_property(name).val_dtype for name in places}
+        if is_wide:
+            lacking = np.repeat(
+                [8 - np.dtype(types[name]).itemsize for name in AXES], len(places["x"])
+            )
+            at = np.concatenate([places[name] for name in AXES])
+            order = np.argsort(at)
+            at, lacking = at[order], lacking[order]
+            content = np.insert(content, np.repeat(at, lacking), 0)
+            added = np.append(0, np.cumsum(lacking))
+            places = {name: one + added[np.searchsorted(at, one)] for name, one in places.items()}
+            types |= dict.fromkeys(AXES, "f8")
+        for names, (_, after) in changes.items():
+            for name, column in zip(names, after.T, strict=True):
+                new = np.ascontiguousarray(column, self.ply.byte_order + types[name])
+                bytes_ = places[name][:, None] + np.arange(new.itemsize)
+                content[bytes_] = new.view(np.uint8).reshape(len(new), -1)
+        return content
+
+
+def with_columns(rows: _Rows, columns: _Columns, wide: str | None) -> _Rows:
+    """Return binary rows with new numbers; `wide` is the byte order of doubles, if needed."""
+    fields = [
+        (name, f"{wide}f8" if wide and name in AXES else type_, *shape)
+        for name, type_, *shape in rows.dtype.descr
+    ]
+    rows = rows.astype(fields)
+    for names, (where, table) in columns.items():
+        for name, column in zip(names, table.T, strict=True):
+            rows[name][where] = column
+    return rows
+
+
+def widened(header: bytes) -> bytes:
+    """Return the header with coordinates declared as double."""
+    vertex = re.compile(rb"(?ms)^[ \t]*element\s+vertex\s.*?^[ \t]*e")  # next element or end
+    axis = re.compile(rb"(?m)^([ \t]*property[ \t]+)\S+(?=[ \t]+[xyz]\s*$)")
+    return vertex.sub(lambda found: axis.sub(rb"\1double", found[0]), header)
+
+
+def read(path: Path) -> PlyDocument:
+    """Read a PLY file; raises MeshFileError when it is damaged or its layout is not supported."""
+    content = path.read_bytes()
+    try:
+        with warnings.catch_warnings(), np.errstate(all="ignore"):
+            warnings.simplefilter("ignore")  # about empty lists and non-integers
+            ply, counts, header = read_header(content)
+            tables, rows, begin = _read_rows(content, ply, counts, len(header))
+            vertex = tables["vertex"]
+            _check_vertices(path, ply, vertex)
+            vertices = _columns(vertex, *AXES)
+            check_vertices(path, vertices)
+            faces = _read_faces(tables, vertices)
+    except (PlyParseError, ValueError, LookupError, TypeError, OverflowError) as error:
+        raise unreadable(path, error) from error
+    check_indices(path, faces, len(vertices))
+    values = [name for name in ("quality", "confidence") if has_floats(ply["vertex"], name)]
+    quality = _columns(vertex, values[0])[:, 0] if values else None
+    has_normals = has_floats(ply["vertex"], *NORMALS)
+    is_uneven = not ply.text and _is_uneven(vertex)
+    return PlyDocument(
+        path,
+        [Part("", vertices, faces, quality, _selected(tables, len(vertices)))],
+        _contents(ply, counts, header, len(faces)),
+        content=content,
+        header=header,
+        ply=ply,
+        rows=rows
+        if ply.text or is_uneven
+        else np.ndarray(len(vertices), _type(ply, vertex), content, begin),
+        places=_places(ply, vertex, begin) if is_uneven else None,
+        begin=begin,
+        normals=_columns(vertex, *NORMALS) if has_normals else None,
+        largest_face=int(corners[1].max()) if (corners := _corners(tables.get("face", {}))) else 3,
+        first={AXES: _first_word(vertex, "x"), NORMALS: _first_word(vertex, "nx")},
+    )
+
+
+def read_header(content: bytes) -> tuple[PlyData, dict[str, int], bytes]:
+    """Read the header with plyfile, without comments (it accepts only ASCII), with counts of 0."""
+    if not content.removeprefix(BYTE_ORDER_MARK).startswith(b"ply"):
+        raise ForeignError("it does not begin with the word ply")
+    end = re.search(rb"\n[ \t]*end_header[ \t]*\r?\n", content)
+    if not end:
+        raise EndsEarlyError("it ends before the end of its header")
+    header = content[: end.end()]
+    lines = b"".join(
+        line.strip() + b"\n" for line in header.removeprefix(BYTE_ORDER_MARK).splitlines()
+    )
+    lines = re.sub(rb"(?m)^(comment|obj_info)\b.*", b"comment", lines)
+    counts = [int(word) for word in re.findall(rb"(?m)^element\s+\S+\s+(\S+)", lines)]
+    properties = len(re.findall(rb"(?m)^property\b", lines))
+    if max(len(counts), properties) > _MOST_NAMES:
+        raise ValueError(
+            f"it has {len(counts)} elements and {properties} properties, of {_MOST_NAMES} at most"
+        )
+    empty = re.sub(rb"(?m)^(element\s+\S+)\s+\S+", rb"\1 0", lines)
+    ply = PlyData.read(io.BytesIO(empty))
+    if "vertex" not in ply:
+        raise ValueError("it has no PLY header with vertices")
+    return ply, dict(zip([one.name for one in ply], counts, strict=True)), header
+
+
+def _read_rows(
+    content: bytes, ply: PlyData, counts: dict[str, int], start: int
+) -> tuple[dict[str, _Table], Indices, int]:
+    """Read all elements; return the byte offsets of text vertices, and that of binary ones, too."""
+    if any(not 0 <= count <= len(content) for count in counts.values()):
+        is_short = 0 <= min(counts.values()) <= max(counts.values()) < _LARGEST_CUT * len(content)
+        reason = f"it cannot have {', '.join(map(str, counts.values()))} rows"
+        raise MayEndEarlyError(reason) if is_short else ValueError(reason)
+    lines = lines_of(content, begin=start, limit=sum(counts.values()) if ply.text else 0)
+    try:
+        return _read_elements(content, ply, counts, start, lines)
+    except ValueError:
+        if not ply.text or (rows := _rows_in_any_lines(lines, ply, counts, start)) is None:
+            raise
+        return _read_elements(content, ply, counts, start, rows)
+
+
+def _rows_in_any_lines(
+    lines: Lines, ply: PlyData, counts: dict[str, int], start: int
+) -> Lines | None:
+    """Return the rows of all elements by their words; None if any are missing or left over."""
+    text = np.frombuffer(lines.text, np.uint8)[start:]
+    is_blank = np.isin(text, np.frombuffer(b" \t\n\r\v\f", np.uint8))
+    found = start + np.flatnonzero(~is_blank & np.append(True, is_blank[:-1]))
+    del is_blank
+    first, words, at = list[Indices](), list[Indices](), 0
+    try:
+        for element in ply:
+            are_lists = [isinstance(one, PlyListProperty) for one in element.properties]
+            count = counts[element.name]
+            if not any(are_lists):
+                sizes = np.full(count, len(are_lists))
+            else:
+                rows = _sizes_of_rows(lines.text, found, at, are_lists, count)
+                sizes = np.array(rows, np.int64)
+            first.append(found[at + np.cumsum(sizes) - sizes])
+            words.append(sizes.astype(np.int32))
+            at += int(sizes.sum())
+    except (ValueError, IndexError):
+        return None
+    if at != len(found):
+        return None
+    kinds = np.zeros(sum(map(len, words)), np.uint8)
+    return replace(lines, starts=np.concatenate(first), words=np.concatenate(words), kinds=kinds)
+
+
+def _sizes_of_rows(
+    text: bytes, found: Indices, at: int, are_lists: Sequence[bool], count: int
+) -> list[int]:
+    """Return how many words each of an element's rows has, the first of which is word `at`."""
+    sizes = list[int]()
+    for _ in range(count):
+        begin = at
+        for is_list in are_lists:
+            if is_list:
+                place = int(found[at])
+                at += max(0, int(text[place : place + _LONGEST_SIZE].split(maxsplit=1)[0]))
+            at += 1
+        sizes.append(at - begin)
+    return sizes
+
+
+def _read_elements(
+    content: bytes, ply: PlyData, counts: dict[str, int], start: int, lines: Lines
+) -> tuple[dict[str, _Table], Indices, int]:
+    """Read all elements from the lines of a text, or from a binary file."""
+    tables, begin, at = dict[str, _Table](), 0, 0
+    starts = lines.starts[:0]
+    for element in ply:
+        count, properties = counts[element.name], element.properties
+        own = lines[at : at + count]
+        if element.name == "vertex":
+            starts, begin = own.starts, start
+        if ply.text:
+            are_lists = [isinstance(one, PlyListProperty) for one in properties]
+            found, at = own.table(are_lists, is_whole=True), at + count
+        else:
+            types = [(getattr(one, "len_dtype", ""), one.val_dtype) for one in properties]
+            is_big = ply.byte_order == ">"
+            found, start = binary_numbers(content, start, count, types, is_big)
+        numbers, lists, bad, column = found
+        if ply.text and bad >= 0:
+            reasons = [f"property {one.name!r}: missing or malformed" for one in properties]
+            reason = [*reasons, "expected end-of-line"][column]
+            row = b" ".join(own.words_of(bad)).decode(errors="replace")[:80]
+            raise own.fault(bad, f"element {element.name!r}: row {bad}: {reason}, in {row!r}")
+        if bad >= 0 or (ply.text and len(own) < count):
+            has_lists = not ply.text and any(types_[0] for types_ in types)
+            raise (MayEndEarlyError if has_lists else EndsEarlyError)(
+                f"it ends in element {element.name!r}, which has {count} rows"
+            )
+        single, several = iter(numbers.T), iter(lists)
+        tables[element.name] = {
+            one.name: next(several if isinstance(one, PlyListProperty) else single)
+            for one in properties
+        }
+    return tables, starts, begin
+
+
+def _sizes(table: _Table) -> dict[str, int]:
+    """Return how many items the lists of each property have in the first row, at least."""
+    lists = {name: one[0] for name, one in table.items() if isinstance(one, tuple)}
+    return {name: int(sizes[0]) if len(sizes) else 0 for name, sizes in lists.items()}
+
+
+def _first_word(table: _Table, name: str) -> int:
+    """Return how many words text rows have before a number; their lists have the same size."""
+    before = list(table)[: list(table).index(name)] if name in table else []
+    return len(before) + sum(_sizes(table).get(one, 0) for one in before)
+
+
+def _type(ply: PlyData, table: _Table) -> np.dtype[Any]:
+    """Return the type of binary vertices."""
+    order, sizes, fields = ply.byte_order, _sizes(table), list[Any]()
+    for one in ply["vertex"].properties:
+        if one.name in sizes:
+            fields.append((f"{one.name}\n", order + one.len_dtype))
+        shape = (sizes[one.name],) if one.name in sizes else ()
+        fields.append((one.name, order + one.val_dtype, shape))
+    return np.dtype(fields)
+
+
+def _check_vertices(path: Path, ply: PlyData, table: _Table) -> None:
+    names = " ".join(["", *table, ""])
+    is_apart = " x y z " not in names or (" nx " in names and " nx ny nz " not in names)
+    if (ply.text and (is_apart or _is_uneven(table, before="x"))) or not _has_numbers(
+        ply["vertex"]
+    ):
+        what = "has vertices without x, y, z side by side, or with uneven lists before them"
+        raise unsupported(path, what, "export it again with x, y and z as the first properties")
+
+
+def _is_uneven(table: _Table, before: str | None = None) -> bool:
+    """Whether lists have several lengths, of those before the last of coordinates and normals."""
+    names = list(table)
+    if before is not None:
+        names = names[: max(names.index(name) for name in (before, "nx") if name in names)]
+    sizes = {name: table[name][0] for name in names if isinstance(table[name], tuple)}
+    return any((one != one[0]).any() for one in sizes.values() if len(one))
+
+
+def _places(ply: PlyData, table: _Table, begin: int) -> dict[str, Indices]:
+    """Return the byte offsets of the numbers of binary vertices."""
+    within, places = np.zeros(len(table["x"]), np.int64), dict[str, Indices]()
+    for one in ply["vertex"].properties:
+        size = np.dtype(one.val_dtype).itemsize
+        places[one.name] = within.copy()
+        if isinstance(one, PlyListProperty):
+            within += np.dtype(one.len_dtype).itemsize + size * table[one.name][0].astype(np.int64)
+        else:
+            within += size
+    starts = begin + np.cumsum(within) - within
+    return {name: starts + place for name, place in places.items()}
+
+
+def has_floats(element: PlyElement, *names: str) -> bool:
+    """Whether an element has these properties, as floating-point numbers."""
+    return all(name in element and element.ply_property(name).dtype()[1] == "f" for name in names)
+
+
+def _has_numbers(element: PlyElement) -> bool:
+    axes = [element.ply_property(name) for name in AXES if name in element]
+    return len(axes) == 3 and not any(isinstance(one, PlyListProperty) for one in axes)
+
+
+def _columns(table: _Table, *names: str) -> Array:
+    return np.column_stack([table[name] for name in names])
+
+
+def _corners(table: _Table) -> tuple[Indices, Indices] | None:
+    """Return the corners of all faces or strips, and how many each has; None if there are none."""
+    found = [table[name] for name in CORNERS if name in table]
+    return (whole(found[0][1]), found[0][0]) if found and len(found[0][0]) else None
+
+
+def _read_faces(tables: dict[str, _Table], vertices: Array) -> Indices:
+    if faces := _corners(tables.get("face", {})):
+        return triangles(*faces, vertices)
+    if strips := _corners(tables.get("tristrips", {})):
+        return strip_triangles(np.insert(strips[0], np.cumsum(strips[1]), -1))
+    return np.zeros((0, 3), np.int64)
+
+
+def _selected(tables: dict[str, _Table], count: int) -> NDArray[np.bool_] | None:
+    """Return which vertices MeshLab's flags select, directly or by a face; None if none."""
+    chosen = np.zeros(count, bool)
+    if "flags" in tables["vertex"]:
+        chosen |= tables["vertex"]["flags"].astype(np.int64) & SELECTED > 0
+    faces = _corners(tables.get("face", {}))
+    if faces and "flags" in tables["face"]:
+        flags = tables["face"]["flags"].astype(np.int64) & SELECTED > 0
+        chosen[faces[0][np.repeat(flags, faces[1])]] = True
+    return chosen if chosen.any() else None
+
+
+def _contents(ply: PlyData, counts: dict[str, int], header: bytes, triangles: int) -> list[str]:
+    mesh = [element for element in ply if element.name in ("vertex", "face", "tristrips")]
+    names = {one.name for element in mesh for one in element.properties}
+    others = names.difference(AXES, CORNERS, *_KNOWN.values())
+    present: dict[str, object] = {word: names & known for word, known in _KNOWN.items()}
+    colours = {one.name: _KNOWN["colours"] & {p.name for p in one.properties} for one in mesh}
+    present["colours"] = colours.pop("vertex")
+    present["face colours"] = any(colours.values())
+    present["polygons"] = counts.get("face", triangles) < triangles
+    present["comments"], present["texture names"] = _COMMENT.search(header), _TEXTURE.search(header)
+    present.update((f"property {shown(name)}", True) for name in sorted(others))
+    present.update(
+        (f"element {shown(one.name)}", counts[one.name]) for one in ply if one not in mesh
+    )
+    return [word for word, is_there in present.items() if is_there]
