@@ -15,8 +15,8 @@ ROOT = Path(__file__).parents[2]
 # What the READMEs link to that is a page here; of other files in the repository the name stays.
 PAGES = {
     "#install": "installing.md",
-    "#limits": "limits.md",
-    "#files": "formats.md",
+    "docs/formats.md": "formats.md",
+    "docs/inputs.md": "inputs.md",
     "guides/tiles.md": "guides/tiles.md",
     "guides/texture.md": "guides/texture.md",
     "guides/troubleshooting.md": "guides/troubleshooting.md",

@@ -1,4 +1,4 @@
-"""Prints a table for the README: which contents of a file are kept when it is filtered.
+"""Prints the table of python/docs/formats.md: what of a file is kept when it is filtered.
 
 In the environment of the project: `python tests/python/format_table.py`.
 """

@@ -17,7 +17,7 @@ from transfer_functions import RESPONSES, TYPES, gain_of
 from promises.meshes import Array, Mesh, comet, diagonal, largest_distance, open_half
 from promises.record import Found, Promise, at_most, largest, promise
 
-# "accurate to 1e-6 of the size of the shape" (python/README.md, Limits).
+# "accurate to 1e-6 of the size of the shape" (python/docs/limits.md).
 ACCURACY = at_most(1e-6)
 LAPLACIANS = ("intrinsic delaunay", "cotangent", "uniform")
 SIZE = {"feature_size": "10%"}

@@ -40,7 +40,7 @@ def lower_spikes() -> Iterator[Promise]:
 
 
 def the_measure() -> Iterator[Promise]:
-    """Spectral Artefacts computes `X - g(A) X` (python/README.md), here with SciPy.
+    """Spectral Artefacts computes `X - g(A) X` (python/docs/guides/choosing.md), here with SciPy.
 
     1e-6 of the diagonal: the accuracy of a full spectrum.
     """

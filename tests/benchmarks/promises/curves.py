@@ -14,7 +14,7 @@ from promises.meshes import Array, diagonal, largest_distance, loaded
 from promises.record import Found, Promise, at_most, largest, promise
 
 MESH = "data/rocker-arm.obj"
-# The accuracy of a full spectrum (python/README.md, Limits).
+# The accuracy of a full spectrum (python/docs/limits.md).
 ACCURACY = at_most(1e-6)
 # Expressions of w = feature size / wavelength for built-in responses (README.md; order 2).
 EXPRESSIONS: dict[str, tuple[dict[str, Any], str]] = {
@@ -40,7 +40,7 @@ def promises() -> Iterator[Promise]:
 
 
 def expressions() -> Iterator[Promise]:
-    """A `transfer_function` of the same curve is the built-in response (python/README.md)."""
+    """A `transfer_function` of the same curve is the built-in response (guides/choosing.md)."""
     for name, (options, expression) in EXPRESSIONS.items():
         yield promise(
             f"expression, off the {name}, in diagonals",

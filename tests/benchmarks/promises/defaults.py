@@ -67,7 +67,7 @@ def every_mesh() -> Iterator[Promise]:
 
 
 def tolerance() -> Iterator[Promise]:
-    """All but a thousandth of the surface is within `tolerance` (python/README.md).
+    """All but a thousandth of the surface is within `tolerance` (python/docs/guides/choosing.md).
 
     Of the limit of infinitely many steps, extrapolated from the paper's own scheme.
     """

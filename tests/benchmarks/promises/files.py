@@ -50,7 +50,7 @@ def promises() -> Iterator[Promise]:
 
 
 def identical_files() -> Iterator[Promise]:
-    """ "Coordinates change, normals follow, and nothing else does" (python/README.md, Files).
+    """ "Coordinates change, normals follow, and nothing else does" (python/docs/formats.md).
 
     So nothing changes where all gains are 1.
     """
@@ -68,12 +68,12 @@ def identical_files() -> Iterator[Promise]:
 
 
 def contents() -> Iterator[Promise]:
-    """The table of python/README.md, Files: what a filtered file keeps."""
+    """The table of python/docs/formats.md: what a filtered file keeps."""
     yield promise("kinds of content lost in a sample of each format", exactly(0), lost)
 
 
 def text() -> Iterator[Promise]:
-    """ "Text formats differ in these numbers alone" (python/README.md, Files)."""
+    """ "Text formats differ in these numbers alone" (python/docs/formats.md)."""
     yield promise(
         "lines that differ but in coordinates and normals: obj_materials/model.obj",
         exactly(0),
@@ -82,7 +82,7 @@ def text() -> Iterator[Promise]:
 
 
 def seams() -> Iterator[Promise]:
-    """Copies of a vertex at a seam move exactly alike (plugin/README.md, Inputs)."""
+    """Copies of a vertex at a seam move exactly alike (python/docs/inputs.md)."""
     for name in CUT:
         for what, options in (("filter", SMOOTH), ("denoise", DENOISED)):
             yield promise(

@@ -17,7 +17,7 @@ from promises.record import Found, Promise, at_most, exactly, promise
 
 IGEA, BUNNY = "data/igea.ply", "data/stanford-bunny.obj"
 SIZE = 0.06  # of the diagonal
-# The effect fades out "within about a feature size" (python/README.md).
+# The effect fades out "within about a feature size" (python/docs/guides/regions.md).
 REACH = 1.25
 CLOSED = ("data/greek_helmet.obj", "data/dragon_40k.ply", "data/brain_t1_279k.ply")
 OPEN = ("data/camelhead.off", "data/rangescan_lato000.ply")
@@ -47,7 +47,7 @@ def selection() -> Iterator[Promise]:
 
 
 def weights() -> Iterator[Promise]:
-    """`weight` scales the displacement of every vertex (python/README.md)."""
+    """`weight` scales the displacement of every vertex (python/docs/guides/regions.md)."""
     yield promise(
         "half a weight, off half the displacement, in diagonals",
         at_most(1e-14),
@@ -56,7 +56,7 @@ def weights() -> Iterator[Promise]:
 
 
 def volume() -> Iterator[Promise]:
-    """`preserve_volume`: "closed components, to 1e-9" (plugin/README.md).
+    """`preserve_volume`: "closed components, to 1e-9" (python/docs/comparison.md).
 
     Of as many as the report counts: those that have shrunk to points it counts in a warning.
     """
@@ -69,13 +69,13 @@ def volume() -> Iterator[Promise]:
 
 
 def boundary() -> Iterator[Promise]:
-    """With `boundary` fixed boundaries do not move at all (plugin/README.md, Inputs)."""
+    """With `boundary` fixed boundaries do not move at all (python/docs/inputs.md)."""
     for name in OPEN:
         yield promise(f"boundary vertices moved: {name}", exactly(0), partial(rim_moved, name))
 
 
 def threads() -> Iterator[Promise]:
-    """ "Results are bit-identical for every number" of threads (python/README.md)."""
+    """ "Results are bit-identical for every number" of threads (python/docs/limits.md)."""
     yield promise("coordinates that differ with one thread and with three", exactly(0), by_threads)
 
 

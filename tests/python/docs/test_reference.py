@@ -195,16 +195,19 @@ def test_options_are_listed_with_their_help(site: Site) -> None:
 
 
 # In Python's spelling, of the plugin and the package.
-NAME = re.compile(r"`([a-z]+(?:_[a-z]+)+)`")
+NAME = re.compile(r"`([a-z]+(?:_[a-z]+)+)(?: = [^`]+)?`")
 # A vertex attribute; the names of the standard for two options of `texture`.
 OTHER_NAMES = {"spectral_details", "nesting_index_l", "nesting_index_s"}
+GUIDES = ["choosing", "regions", "texture", "troubleshooting"]
+PAGES = ["inputs.md", "limits.md", *(f"guides/{name}.md" for name in GUIDES)]
+PAGES += ["../../README.md", "../README.md"]
 
 
-@pytest.mark.parametrize("readme", ["README.md", "python/README.md"])
-def test_names_in_the_readmes_are_those_of_the_plugin_and_the_package(readme: str) -> None:
+@pytest.mark.parametrize("page", PAGES)
+def test_names_in_texts_are_those_of_the_plugin_and_the_package(page: str) -> None:
     known = {*meshlab_spectral.__all__, *filters(), *MEANINGS, *OTHER_NAMES}
     known |= {parameter.name for parameter in all_parameters()}
-    text = (SOURCES.parents[1] / readme).read_text(encoding="utf-8")
+    text = (SOURCES / page).read_text(encoding="utf-8")
     assert set(NAME.findall(text)) - known == set()
 
 

@@ -12,7 +12,7 @@ from format_table import SMOOTH, compared, outcomes, table
 from helpers import filter_file
 from plyfile import PlyData
 
-README = Path(__file__).resolve().parents[3] / "python" / "README.md"
+PAGE = Path(__file__).resolve().parents[3] / "python" / "docs" / "formats.md"
 BY_NAME = {sample.name: sample for sample in SAMPLES}
 CONVERSIONS = [
     (name, ending)
@@ -37,8 +37,8 @@ def test_a_loss_appears_in_the_table(tmp_path: Path) -> None:
     assert found == {**dict.fromkeys(before, "LOST"), "colours": "told"}
 
 
-def test_the_readme_has_the_table() -> None:
-    assert table() in README.read_text()
+def test_the_page_of_formats_has_the_table() -> None:
+    assert table() in PAGE.read_text()
 
 
 @pytest.mark.parametrize(("name", "ending"), CONVERSIONS)
