@@ -292,7 +292,8 @@ def _report_of(table: str) -> str:
     if "summary" in kinds:
         entries.append(("summary", "what was found and done, in one line", True))
     entries.append(("warnings", "problems that were not errors, and what to do about them", True))
-    kinds["warnings"] = "list[str]"
+    entries.append(("warning_codes", "for each of them, what it is about", True))
+    kinds["warnings"] = kinds["warning_codes"] = "list[str]"
 
     def lines(wanted: bool) -> list[str]:
         return [

@@ -172,8 +172,9 @@ void FilterSpectralPlugin::logOutput(const spectral::FilterOutput& output, doubl
     std::ostringstream time;
     time << ". " << std::setprecision(seconds < 100.0 ? 2 : 3) << seconds << " s.";
     if (std::getline(lines, line)) log(line + time.str());
-    for (const std::string& warning : output.warnings)
-        if (output.text.find(warning) == std::string::npos) log("  WARNING: " + warning);
+    for (const spectral::Warning& warning : output.warnings)
+        if (warning.code != spectral::WarningCode::NothingRemoved)  // the line above says why
+            log("  WARNING: " + warning.text);
     while (std::getline(lines, line)) log(line);
 }
 

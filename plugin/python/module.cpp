@@ -83,14 +83,11 @@ nb::dict applyFilter(const std::string& name, const Positions& vertices, const I
     result["report"] = dictOf(std::move(output.report));
     result["text"] = output.text;
     result["summary"] = output.summary;
-    result["warnings"] = output.warnings;
+    result["warnings"] = listOf(output.warnings);
     if (output.columns.empty()) return result;
     nb::list columns;
-    for (FilterOutput& column : output.columns) {
-        nb::dict report = dictOf(std::move(column.report));
-        report["warnings"] = column.warnings;
-        columns.append(report);
-    }
+    for (FilterOutput& column : output.columns)
+        columns.append(nb::make_tuple(dictOf(std::move(column.report)), listOf(column.warnings)));
     result["columns"] = columns;
     return result;
 }
@@ -220,6 +217,7 @@ NB_MODULE(_core, m) {
     python::endRunsAtExit();
     m.def("filters", python::describedFilters);
     m.def("presets", python::describedPresets);
+    m.def("warning_kinds", python::describedWarnings);
     m.def("apply", python::applyFilter, "name"_a, "vertices"_a, "faces"_a, "options"_a,
           nb::kw_only(), "selected"_a = nb::none(), "values"_a = nb::none(), "gain"_a = nb::none(),
           "whole"_a = nb::none(), "progress"_a = nb::none(), "threads"_a = 0, "is_shell"_a = false);

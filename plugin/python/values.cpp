@@ -82,6 +82,13 @@ nb::dict dictOf(Values&& report) {
     return result;
 }
 
+nb::list listOf(const Warnings& warnings) {
+    nb::list list;
+    for (const Warning& one : warnings)
+        list.append(nb::make_tuple(kindOf(one.code).name, one.text));
+    return list;
+}
+
 nb::list describedFilters() {
     nb::list filters;
     for (const Filter& filter : allFilters()) {
@@ -107,6 +114,12 @@ nb::list describedPresets() {
         presets.append(nb::make_tuple(preset.name, preset.filter, preset.purpose,
                                       dictOf(Values(preset.options))));
     return presets;
+}
+
+nb::dict describedWarnings() {
+    nb::dict kinds;
+    for (const WarningKind& one : allWarnings()) kinds[one.name] = one.meaning;
+    return kinds;
 }
 
 }  // namespace spectral::python

@@ -12,6 +12,9 @@ namespace nb = nanobind;
 /// @throws InvalidOption  for a value of another type.
 Values valuesOf(const nb::dict& given);
 
+/// A list of (code, text).
+nb::list listOf(const Warnings& warnings);
+
 /// Numbers, flags and arrays by their names.
 nb::dict dictOf(Values&& report);
 
@@ -20,5 +23,8 @@ nb::list describedFilters();
 
 /// All presets: a list of (name, python name of the filter, purpose, options).
 nb::list describedPresets();
+
+/// What each code of a warning means: a dict.
+nb::dict describedWarnings();
 
 }  // namespace spectral::python

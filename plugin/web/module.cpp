@@ -212,7 +212,10 @@ val applied(const std::string& name, const val& mesh, const val& options, const 
         made.set("report", report);
         made.set("text", output.text);
         made.set("summary", output.summary);
-        made.set("warnings", textsOf(output.warnings));
+        const auto text = [](const Warning& one) { return val(one.text); };
+        const auto code = [](const Warning& one) { return val(kindOf(one.code).name); };
+        made.set("warnings", listOf(output.warnings, text));
+        made.set("warningCodes", listOf(output.warnings, code));
         return made;
     });
 }

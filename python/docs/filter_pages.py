@@ -1,4 +1,4 @@
-"""Sphinx: the directives `filter` and `filter-list`, which write the reference of the filters."""
+"""Sphinx: the directives `filter`, `filter-list` and `warning-list`: what the filters tell of."""
 
 from __future__ import annotations
 
@@ -8,6 +8,8 @@ from collections.abc import Iterable, Iterator
 from typing import Any
 
 from docutils import nodes
+from meshlab_spectral import _core
+from meshlab_spectral.warned import KINDS
 from plugin_facts import MEANINGS, Filter, Parameter, filters
 from sphinx.application import Sphinx
 from sphinx.util.docutils import SphinxDirective
@@ -114,8 +116,19 @@ class FilterListDirective(SphinxDirective):
         return self.parse_text_to_nodes("\n".join(_table(header, rows, "30 35 35")))
 
 
+class WarningListDirective(SphinxDirective):
+    """`.. warning-list::`: the codes of all warnings, and what they are about."""
+
+    def run(self) -> list[nodes.Node]:
+        """Write the table."""
+        kinds = {**_core.warning_kinds(), **KINDS}
+        rows = ((f"``{code}``", meaning) for code, meaning in kinds.items())
+        return self.parse_text_to_nodes("\n".join(_table(("Code", "About"), rows, "30 70")))
+
+
 def setup(app: Sphinx) -> dict[str, Any]:
     """Register the directives."""
     app.add_directive("filter", FilterDirective)
     app.add_directive("filter-list", FilterListDirective)
+    app.add_directive("warning-list", WarningListDirective)
     return {"parallel_read_safe": True}

@@ -160,21 +160,23 @@ std::string advice(const Error& error, const Filter& filter, const Values& given
     return remedy(error, Given(filter, given));
 }
 
-std::string accuracyWarning(double accuracy, double errorEstimate) {
+Warning accuracyWarning(double accuracy, double errorEstimate) {
     std::ostringstream text;
     text << std::setprecision(2) << "the requested relative accuracy of " << accuracy
          << " was not reached, the estimated error is " << errorEstimate;
-    return text.str();
+    return {WarningCode::Accuracy, text.str()};
 }
 
-std::string accuracyWarning(double accuracy, double errorEstimate, FilterType type) {
-    return accuracyWarning(accuracy, errorEstimate) +
-           (type == FilterType::Custom
-                ? ". Choose gains closer to 1"
-                : ". Choose a |stop_gain| of 0.05 instead of 0, a lower |order| or a wider band");
+Warning accuracyWarning(double accuracy, double errorEstimate, FilterType type) {
+    Warning warning = accuracyWarning(accuracy, errorEstimate);
+    warning.text +=
+        type == FilterType::Custom
+            ? ". Choose gains closer to 1"
+            : ". Choose a |stop_gain| of 0.05 instead of 0, a lower |order| or a wider band";
+    return warning;
 }
 
-std::vector<std::string> residualWarnings(const Eigen::VectorXd& residuals) {
+Warnings residualWarnings(const Eigen::VectorXd& residuals) {
     constexpr double kAccurate = 1e-6;
     Eigen::Index worst = 0;
     if (residuals.size() == 0 || residuals.maxCoeff(&worst) <= kAccurate) return {};
@@ -184,7 +186,7 @@ std::vector<std::string> residualWarnings(const Eigen::VectorXd& residuals) {
          << " harmonics is above " << kAccurate << ", at most " << residuals[worst] << " (number "
          << worst << "): the mesh has needle triangles, or parts far away. To fix this, "
          << kRemesh;
-    return {text.str()};
+    return {{WarningCode::HarmonicResiduals, text.str()}};
 }
 
 }  // namespace spectral

@@ -16,14 +16,14 @@ namespace spectral {
 std::string advice(const Error& error, const Filter& filter, const Values& given);
 
 /// Warns that the requested relative accuracy was not reached.
-std::string accuracyWarning(double accuracy, double errorEstimate);
+Warning accuracyWarning(double accuracy, double errorEstimate);
 
 /// The same, and says which gains would be evaluated more accurately.
 /// @param type  that of the transfer function; an equalizer's is custom.
-std::string accuracyWarning(double accuracy, double errorEstimate, FilterType type);
+Warning accuracyWarning(double accuracy, double errorEstimate, FilterType type);
 
 /// Warns about the least accurate harmonic if it has fewer than six digits.
 /// @param residuals  relative residuals of a basis of harmonics; may be empty.
-std::vector<std::string> residualWarnings(const Eigen::VectorXd& residuals);
+Warnings residualWarnings(const Eigen::VectorXd& residuals);
 
 }  // namespace spectral

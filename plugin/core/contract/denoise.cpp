@@ -196,18 +196,19 @@ std::string reportText(const std::string& summary, const DenoiseResult& result, 
     return text.str();
 }
 
-std::vector<std::string> warningsOf(const DenoiseOptions& options, const std::string& summary,
-                                    const DenoiseResult& result) {
-    std::vector<std::string> warnings = surfaceWarnings(result);
+Warnings warningsOf(const DenoiseOptions& options, const std::string& summary,
+                    const DenoiseResult& result) {
+    Warnings warnings = surfaceWarnings(result);
     if (result.rounds > 0 && isAllFixed(result, result.V.rows()))
         warnings.push_back(allFixedWarning("move"));
     else if (options.strength > 0.0 && (result.maxDisplacement == 0.0 || result.isCrumpled))
-        warnings.push_back(summary);
+        warnings.push_back({WarningCode::NothingRemoved, summary});
     constexpr double kHalf = 0.34;  // half a noiseless edge: noise lengthens edges
     if (result.diagnosis.noise.height > kHalf * result.diagnosis.noise.meanEdge)
-        warnings.emplace_back(
-            "the noise is higher than half an edge: it hides details that cannot be recovered. "
-            "Check the result, or remesh more coarsely first");
+        warnings.push_back(
+            {WarningCode::HighNoise,
+             "the noise is higher than half an edge: it hides details that cannot be recovered. "
+             "Check the result, or remesh more coarsely first"});
     return warnings;
 }
 

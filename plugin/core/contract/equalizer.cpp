@@ -121,8 +121,7 @@ FilterResult withoutTolerance(FilterResult result) {
 }
 
 /// Every component keeps its centre, so that larger ones can move away from smaller ones in them.
-std::vector<std::string> partingWarnings(const FilterInput& input, const MeshLengths& mesh,
-                                         const Vertices& moved) {
+Warnings partingWarnings(const FilterInput& input, const MeshLengths& mesh, const Vertices& moved) {
     const Parting parting = partingOf(input.V, input.F, moved, mesh.meanEdge);
     if (parting.components == 0) return {};
     std::ostringstream text;
@@ -131,7 +130,7 @@ std::vector<std::string> partingWarnings(const FilterInput& input, const MeshLen
          << lengthAndPercentage(parting.distance, mesh.diagonal)
          << " away from one that it touched, since each keeps its centre: choose gains nearer to "
             "1, or select the region to be filtered";
-    return {text.str()};
+    return {{WarningCode::PartedComponents, text.str()}};
 }
 
 FilterOutput run(const FilterInput& input, const MeshLengths& mesh, const Values& given,

@@ -36,7 +36,7 @@ void warnOfSelection(const FilterInput& input, const Values& given, FilterOutput
         return;
     const std::string note = selectionText(input.selected);
     if (!note.empty() && output.text.find(note) == std::string::npos)
-        output.warnings.insert(output.warnings.begin(), note);
+        output.warnings.insert(output.warnings.begin(), {WarningCode::Selection, note});
 }
 
 /// Calls `work(lengths of the mesh, progress)` in a team of threads.
@@ -51,8 +51,8 @@ FilterOutput advised(const Filter& filter, const FilterInput& input, const Value
         });
         warnOfSelection(input, given, output);
         const auto translate = [&](FilterOutput& part) {
-            for (std::string& warning : part.warnings)
-                warning = inWords(warning, filter, input.words);
+            for (Warning& warning : part.warnings)
+                warning.text = inWords(warning.text, filter, input.words);
         };
         translate(output);
         for (FilterOutput& column : output.columns) translate(column);

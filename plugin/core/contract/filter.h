@@ -7,6 +7,7 @@
 
 #include "core/contract/parameter.h"
 #include "core/contract/value.h"
+#include "core/contract/warning.h"
 #include "core/contract/words.h"
 #include "core/mesh/measures.h"
 #include "core/mesh/mesh.h"
@@ -46,7 +47,7 @@ struct FilterOutput {
     Values report{};
     std::string text{};     ///< The report as lines for a log.
     std::string summary{};  ///< What was found and done, one line; empty if the numbers say it all.
-    std::vector<std::string> warnings{};  ///< Shortcomings that are not errors.
+    Warnings warnings{};    ///< Shortcomings that are not errors.
     std::vector<FilterOutput> columns{};  ///< Of several values: report and warnings of each.
 };
 

@@ -151,14 +151,14 @@ std::string headline(const FilterOptions& options, const FilterResult& result, d
 }
 
 /// @param last  frequency of the highest harmonic.
-std::string cutoffWarning(const FilterResult& result, double last) {
+Warning cutoffWarning(const FilterResult& result, double last) {
     std::ostringstream text;
     text << std::setprecision(4) << "the " << result.eigenvalues.size()
          << " harmonics end at features of " << 2.0 * kPi / last << ", above the feature size of "
          << result.featureSize
          << ": details between these sizes are treated like all finer ones. Choose a larger "
             "|feature_size|, a larger |basis_size|, or |spectrum = full|";
-    return text.str();
+    return {WarningCode::FewHarmonics, text.str()};
 }
 
 /// The settings with which parts of a surface neither collapse nor grow as fast.
@@ -188,13 +188,13 @@ std::string convergingFilter(const FilterOptions& options) {
            weakerFilter(options) + ", or a larger |tolerance|";
 }
 
-std::string foldWarning(const FilterOptions& options, const FilterResult& result) {
-    return std::to_string(result.foldedFaces) +
-           (result.foldedFaces == 1 ? " face has" : " faces have") + " folded over. Choose " +
-           weakerFilter(options);
+Warning foldWarning(const FilterOptions& options, const FilterResult& result) {
+    return {WarningCode::FoldedFaces, std::to_string(result.foldedFaces) +
+                                          (result.foldedFaces == 1 ? " face has" : " faces have") +
+                                          " folded over. Choose " + weakerFilter(options)};
 }
 
-std::string toleranceWarning(const FilterOptions& options, const FilterResult& result) {
+Warning toleranceWarning(const FilterOptions& options, const FilterResult& result) {
     std::ostringstream text;
     text << std::setprecision(2) << "the tolerance of " << options.tolerance
          << " was not reached on " << percentOf(result.singularPart) << " of the surface, "
@@ -202,41 +202,42 @@ std::string toleranceWarning(const FilterOptions& options, const FilterResult& r
                  ? "most of which collapses; elsewhere the estimated error is "
                  : "where the estimated error is at least ")
          << result.stepError << ": " << convergingFilter(options);
-    return text.str();
+    return {WarningCode::Tolerance, text.str()};
 }
 
 /// Gains above 1 at the largest sizes are meant for details by those who set them.
-std::vector<std::string> scalingWarnings(const FilterOptions& options, const FilterResult& result) {
+Warnings scalingWarnings(const FilterOptions& options, const FilterResult& result) {
     constexpr double kScaling = 1.01;
     const double gain = TransferFunction(options.transferFunction, result.cutoffFrequency)(0.0);
     if (!(gain > kScaling)) return {};
     std::ostringstream text;
     text << std::setprecision(3) << "the gain of what is largest is " << gain
          << ", which scales the whole object. Choose 1 for it to keep its size";
-    return {text.str()};
+    return {{WarningCode::WholeScaled, text.str()}};
 }
 
-std::string volumeWarning(const FilterResult& result) {
+Warning volumeWarning(const FilterResult& result) {
     std::ostringstream text;
     text << "components that keep their volume: " << result.volumes.preserved << " of "
          << result.components << "; open, or not consistently oriented: " << result.volumes.open;
     if (result.volumes.lost > 0)
         text << "; shrunk too far, or not movable: " << result.volumes.lost;
-    return text.str() + ". Close holes and orient the faces first, or turn |preserve_volume| off";
+    text << ". Close holes and orient the faces first, or turn |preserve_volume| off";
+    return {WarningCode::VolumeNotKept, text.str()};
 }
 
 /// Only a warning, as scripts use one feature size for many meshes.
-std::string edgeWarning(const FilterResult& result) {
+Warning edgeWarning(const FilterResult& result) {
     std::ostringstream text;
     text << std::setprecision(3) << "the mesh has no details of the feature size "
          << result.featureSize << ", which is below its mean edge length of " << result.meanEdge
          << ". Choose at least two edges, " << 2.0 * result.meanEdge
          << "; if the model has few triangles, {apply 'Subdivision Surfaces: Midpoint'|subdivide "
             "them} first";
-    return text.str();
+    return {WarningCode::BelowEdges, text.str()};
 }
 
-std::string shrinkingWarning(const FilterResult& result, double diagonal) {
+Warning shrinkingWarning(const FilterResult& result, double diagonal) {
     const double half = 0.5 * result.featureSize;
     std::ostringstream text;
     text << percentOf(result.shrunkenPart) << std::setprecision(2)
@@ -247,7 +248,7 @@ std::string shrinkingWarning(const FilterResult& result, double diagonal) {
                  : ", and on " + percentOf(result.singularPart) + " the tolerance was not reached")
          << ". Try |feature_size = " << half << "| (" << 100.0 * half / diagonal
          << " % of the diagonal), or filter a selection without these parts";
-    return text.str();
+    return {WarningCode::ThinParts, text.str()};
 }
 
 double lastFrequency(const FilterResult& result) {
@@ -256,14 +257,15 @@ double lastFrequency(const FilterResult& result) {
 
 }  // namespace
 
-std::vector<std::string> fractionalWarnings(const FilterOptions& options,
-                                            const FilterResult& result, double diagonal) {
-    std::vector<std::string> warnings = surfaceWarnings(result);
+Warnings fractionalWarnings(const FilterOptions& options, const FilterResult& result,
+                            double diagonal) {
+    Warnings warnings = surfaceWarnings(result);
     const bool isAtRest = isAllFixed(result, result.V.rows());
     if (isAtRest)
         warnings.push_back(options.creaseAngle > 0.0
-                               ? "nothing can move: every vertex lies on a crease or a fixed "
-                                 "boundary. Choose a larger |crease_angle|"
+                               ? Warning{WarningCode::AllFixed,
+                                         "nothing can move: every vertex lies on a crease or a "
+                                         "fixed boundary. Choose a larger |crease_angle|"}
                                : allFixedWarning("move"));
     const bool isDefault = options.keepThinParts;
     if (!isDefault && options.transferFunction.type != FilterType::Custom &&
@@ -278,10 +280,12 @@ std::vector<std::string> fractionalWarnings(const FilterOptions& options,
     if (!isDefault && result.foldedFaces > 0) warnings.push_back(foldWarning(options, result));
     if (options.preserveVolume && result.volumes.preserved < result.components)
         warnings.push_back(volumeWarning(result));
-    if (!result.accuracyReached)
-        warnings.push_back(accuracyWarning(result.accuracy, result.errorEstimate, transfer.type) +
-                           ", or fewer steps; if triangles are needles, {apply 'Remeshing: "
-                           "Isotropic Explicit Remeshing'|remesh} first");
+    if (!result.accuracyReached) {
+        warnings.push_back(accuracyWarning(result.accuracy, result.errorEstimate, transfer.type));
+        warnings.back().text +=
+            ", or fewer steps; if triangles are needles, {apply 'Remeshing: Isotropic Explicit "
+            "Remeshing'|remesh} first";
+    }
     if (!result.toleranceReached && !shrinks) warnings.push_back(toleranceWarning(options, result));
     if (!result.cutoffReached) warnings.push_back(cutoffWarning(result, lastFrequency(result)));
     append(residualWarnings(result.residuals), warnings);

@@ -20,7 +20,7 @@ std::string fractionalText(const FilterOptions& options, const FilterResult& res
                            const std::string& deed = {});
 
 /// Shortcomings of a result, and what to choose instead.
-std::vector<std::string> fractionalWarnings(const FilterOptions& options,
-                                            const FilterResult& result, double diagonal);
+Warnings fractionalWarnings(const FilterOptions& options, const FilterResult& result,
+                            double diagonal);
 
 }  // namespace spectral

@@ -129,14 +129,14 @@ std::string textOf(const GeometrySpectrum& spectrum, const std::string& noise) {
     return text.str();
 }
 
-std::vector<std::string> warningsOf(const GeometrySpectrum& spectrum) {
+Warnings warningsOf(const GeometrySpectrum& spectrum) {
     constexpr double kAccurate = 0.01;
     if (spectrum.mismatch <= kAccurate) return {};
     std::ostringstream text;
     text << std::setprecision(3) << "up to " << 100.0 * std::min(1.0, spectrum.mismatch)
          << " % of the energy may belong to other sizes: the mesh has needle triangles, or parts "
             "far away";
-    return {text.str()};
+    return {{WarningCode::MixedSizes, text.str()}};
 }
 
 FilterOutput run(const FilterInput& input, const MeshLengths& mesh, const Values& given,

@@ -79,12 +79,13 @@ Entries<Filtered> signalEntries() {
 }
 
 /// @param vertices  number of vertices of the mesh.
-std::vector<std::string> warningsOf(Index vertices, const FilteredSignal& result, FilterType type) {
-    std::vector<std::string> warnings = surfaceWarnings(result);
+Warnings warningsOf(Index vertices, const FilteredSignal& result, FilterType type) {
+    Warnings warnings = surfaceWarnings(result);
     if (result.isConstant)
-        warnings.emplace_back(
-            "nothing to filter: the values are constant on every connected component. Apply a "
-            "filter that computes qualities or colours first");
+        warnings.push_back(
+            {WarningCode::ConstantValues,
+             "nothing to filter: the values are constant on every connected component{. Apply a "
+             "filter that computes qualities or colours first|}"});
     else if (isAllFixed(result, vertices - result.verticesWithoutData))
         warnings.push_back(allFixedWarning("change"));
     if (!result.accuracyReached)
@@ -124,8 +125,7 @@ FilterOutput filterValues(const char* name, const char* signal, const FilterInpu
     output.text = text.str();
     output.values = std::move(result.Y);
     const auto warnings = [&] {
-        std::vector<std::string> all =
-            warningsOf(input.V.rows(), result, options.transferFunction.type);
+        Warnings all = warningsOf(input.V.rows(), result, options.transferFunction.type);
         append(percentageWarnings(mesh), all);
         append(unusedWarnings(fields, call), all);
         return all;

@@ -49,33 +49,34 @@ bool isAllFixed(const SurfaceCounts& counts, Index n) {
            counts.fixedVertices + counts.joinedVertices + counts.unreferencedVertices == n;
 }
 
-std::string allFixedWarning(const std::string& verb) {
-    return "nothing can " + verb +
-           ": every vertex lies on the boundary, which is fixed. Choose |boundary = free|; if the "
-           "triangles are not connected, {apply 'Merge Close Vertices'|merge close vertices} first";
+Warning allFixedWarning(const std::string& verb) {
+    return {WarningCode::AllFixed,
+            "nothing can " + verb +
+                ": every vertex lies on the boundary, which is fixed. Choose |boundary = free|; if "
+                "the triangles are not connected, {apply 'Merge Close Vertices'|merge close "
+                "vertices} first"};
 }
 
-void append(std::vector<std::string> more, std::vector<std::string>& warnings) {
-    for (std::string& warning : more) warnings.push_back(std::move(warning));
-}
-
-std::vector<std::string> surfaceWarnings(const SurfaceCounts& counts) {
-    std::vector<std::string> warnings;
+Warnings surfaceWarnings(const SurfaceCounts& counts) {
+    Warnings warnings;
     if (counts.nearlyJoined > 0)
         warnings.push_back(
-            std::to_string(counts.nearlyJoined) +
-            " vertices on the boundary are within round-off of others, but not at the same point: "
-            "the surface may tear there. {Apply 'Merge Close Vertices'|Merge close vertices} "
-            "first");
+            {WarningCode::NearlyJoined,
+             std::to_string(counts.nearlyJoined) +
+                 " vertices on the boundary are within round-off of others, but not at the same "
+                 "point: "
+                 "the surface may tear there. {Apply 'Merge Close Vertices'|Merge close vertices} "
+                 "first"});
     if (counts.flatComponents > 0)
-        warnings.push_back(std::to_string(counts.flatComponents) +
-                           (counts.flatComponents == 1 ? " component" : " components") +
-                           " without area, such as a triangle of three equal points, ignored");
+        warnings.push_back(
+            {WarningCode::FlatComponents,
+             std::to_string(counts.flatComponents) +
+                 (counts.flatComponents == 1 ? " component" : " components") +
+                 " without area, such as a triangle of three equal points, ignored"});
     return warnings;
 }
 
-std::vector<std::string> periodicWarnings(const Vertices& before, const Faces& F,
-                                          const Vertices& after) {
+Warnings periodicWarnings(const Vertices& before, const Faces& F, const Vertices& after) {
     constexpr double kRoundOff = 1e-6;  // of the diagonal
     const auto pairs = periodicPairs(before, F);
     const double mismatch = largestMismatch(pairs, before, after);
@@ -87,7 +88,7 @@ std::vector<std::string> periodicWarnings(const Vertices& before, const Faces& F
            "cell, and are now apart by up to "
         << mismatch
         << ": choose |boundary = fixed|, or filter 3 x 3 x 3 copies and keep the one in the middle";
-    return {text.str()};
+    return {{WarningCode::PeriodicCell, text.str()}};
 }
 
 std::string selectionText(const std::vector<bool>& selected) {
@@ -98,9 +99,9 @@ std::string selectionText(const std::vector<bool>& selected) {
            " vertices";
 }
 
-std::vector<std::string> percentageWarnings(const MeshLengths& mesh) {
+Warnings percentageWarnings(const MeshLengths& mesh) {
     constexpr double kNoticeable = 1.01;
-    std::vector<std::string> warnings;
+    Warnings warnings;
     std::ostringstream text;
     text << std::setprecision(3);
     if (mesh.filler.vertices == 0 && mesh.diagonal > kNoticeable * mesh.surfaceDiagonal) {
@@ -111,7 +112,7 @@ std::vector<std::string> percentageWarnings(const MeshLengths& mesh) {
              << mesh.diagonal
              << ": percentages refer to the larger one, defaults to the smaller. {Apply 'Remove "
                 "Unreferenced Vertices'|Remove them} first";
-        warnings.push_back(text.str());
+        warnings.push_back({WarningCode::FarVertices, text.str()});
         text.str({});
     }
     if (const MeshLengths::Filler& filler = mesh.filler; filler.vertices > 0) {
@@ -121,7 +122,7 @@ std::vector<std::string> percentageWarnings(const MeshLengths& mesh) {
              << ", far from all others, which defaults do not count: where that stands for "
              << "missing data, select the rest (|where = " << axis
              << (filler.isLowest ? " > " : " < ") << filler.value << "|)";
-        warnings.push_back(text.str());
+        warnings.push_back({WarningCode::MissingData, text.str()});
     }
     return warnings;
 }

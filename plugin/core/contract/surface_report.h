@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "core/contract/report.h"
+#include "core/contract/warning.h"
 #include "core/mesh/measures.h"
 #include "core/mesh/surface.h"
 
@@ -78,20 +79,16 @@ bool isAllFixed(const SurfaceCounts& counts, Index n);
 
 /// Warns that the boundary fixes every vertex.
 /// @param verb  what no vertex can do: "move" or "change".
-std::string allFixedWarning(const std::string& verb);
+Warning allFixedWarning(const std::string& verb);
 
 /// Warns of what may tear the surface apart, and says what to do about it.
-std::vector<std::string> surfaceWarnings(const SurfaceCounts& counts);
+Warnings surfaceWarnings(const SurfaceCounts& counts);
 
 /// Warns of vertices without faces that enlarge the diagonal by more than 1 %, and of a value that
 /// may stand for missing data: percentages then do not mean what they seem to.
-std::vector<std::string> percentageWarnings(const MeshLengths& mesh);
+Warnings percentageWarnings(const MeshLengths& mesh);
 
 /// Warns where opposite boundaries of a periodic cell matched and do not any more.
-std::vector<std::string> periodicWarnings(const Vertices& before, const Faces& F,
-                                          const Vertices& after);
-
-/// Appends warnings.
-void append(std::vector<std::string> more, std::vector<std::string>& warnings);
+Warnings periodicWarnings(const Vertices& before, const Faces& F, const Vertices& after);
 
 }  // namespace spectral

@@ -205,34 +205,40 @@ FilterOutput run(const FilterInput& input, const MeshLengths& mesh, const Values
     output.text = textOf(texture);
     output.warnings = percentageWarnings(mesh);
     if (texture.tooThin > 0)
-        output.warnings.push_back("parts thinner than the waviness cutoff are left out, in all " +
-                                  countText(texture.tooThin) + ", the first is vertex " +
-                                  std::to_string(texture.firstTooThin) +
-                                  ". A smaller cutoff measures them");
+        output.warnings.push_back({WarningCode::ThinnerThanCutoff,
+                                   "parts thinner than the waviness cutoff are left out, in all " +
+                                       countText(texture.tooThin) + ", the first is vertex " +
+                                       std::to_string(texture.firstTooThin) +
+                                       ". A smaller cutoff measures them"});
     if (texture.leftOut > texture.evaluated)
         output.warnings.push_back(
-            "only " + std::to_string(texture.evaluated) + " of " +
-            countText(texture.leftOut + texture.evaluated + texture.tooThin) +
-            " are measured: the others are within a cutoff of boundaries or creases, or not on "
-            "the fitted shape. A smaller |waviness|, or a larger |crease_angle| such as 180, "
-            "measures "
-            "more");
+            {WarningCode::LittleMeasured,
+             "only " + std::to_string(texture.evaluated) + " of " +
+                 countText(texture.leftOut + texture.evaluated + texture.tooThin) +
+                 " are measured: the others are within a cutoff of boundaries or creases, or not "
+                 "on "
+                 "the fitted shape. A smaller |waviness|, or a larger |crease_angle| such as 180, "
+                 "measures "
+                 "more"});
     constexpr double kSteep = 0.7;  // Sq is .5 % off at .4, and 3.5 % at 1
     if (!isShape(options.form) && texture.Sdq > kSteep)
         output.warnings.push_back(
-            "slopes of the texture are steep, Sdq " + shortText(texture.Sdq) +
-            ": on a free shape they make heights 2 % too low, or more. Choose the plane, sphere or "
-            "cylinder that the surface is as |form|");
+            {WarningCode::SteepTexture, "slopes of the texture are steep, Sdq " +
+                                            shortText(texture.Sdq) +
+                                            ": on a free shape they make heights 2 % too low, or "
+                                            "more. Choose the plane, sphere or "
+                                            "cylinder that the surface is as |form|"});
     if (const std::string note = leftOutText(texture); !note.empty())
-        output.warnings.push_back(note);
+        output.warnings.push_back({WarningCode::OtherHeights, note});
     // Sq is half of this lower. Waves and noise have .1 % at that height, a terrain with a flat rim
     // 2.5, the flat faces of a machine part 5.
     constexpr double kFlat = 0.04;
     if (texture.flat > kFlat)
-        output.warnings.push_back(
-            shortText(100.0 * texture.flat) +
-            " % of the area has no texture: its heights are below a thousandth of Sq, and lower "
-            "all means. Select what is rough, such as where nz > 0.5");
+        output.warnings.push_back({WarningCode::FlatTexture,
+                                   shortText(100.0 * texture.flat) +
+                                       " % of the area has no texture: its heights are below a "
+                                       "thousandth of Sq, and lower "
+                                       "all means. Select what is rough, such as where nz > 0.5"});
     if (!texture.accuracyReached)
         output.warnings.push_back(
             accuracyWarning(kTextureAccuracy, texture.errorEstimate / mesh.diagonal));

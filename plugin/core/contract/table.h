@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/contract/parameter.h"
+#include "core/contract/warning.h"
 
 namespace spectral {
 
@@ -118,12 +119,13 @@ Call callOf(const Fields<Call>& fields, const Values& given, const MeshLengths& 
 
 /// Warnings about parameters that are not at their defaults but have no effect with the others.
 template <class Call>
-std::vector<std::string> unusedWarnings(const Fields<Call>& fields, const Call& call) {
-    std::vector<std::string> warnings;
+Warnings unusedWarnings(const Fields<Call>& fields, const Call& call) {
+    Warnings warnings;
     for (const Field<Call>& one : fields) {
         if (one.unused == nullptr || one.get(call) == converted(one, one.usual, {})) continue;
         if (const char* const when = one.unused(call))
-            warnings.push_back("|" + one.name + "| has no effect " + when);
+            warnings.push_back(
+                {WarningCode::UnusedOption, "|" + one.name + "| has no effect " + when});
     }
     return warnings;
 }

@@ -11,11 +11,12 @@ thread_local std::string lastWarnings, lastSummary, lastError;
 
 }  // namespace
 
-void keepLastMessages(const std::string& summary, const std::vector<std::string>& warnings) {
+void keepLastMessages(const std::string& summary, const spectral::Warnings& warnings) {
     lastSummary = summary;
     lastError.clear();
     lastWarnings.clear();
-    for (const std::string& warning : warnings) lastWarnings += warning + '\n';
+    for (const spectral::Warning& warning : warnings)
+        lastWarnings += spectral::kindOf(warning.code).name + (' ' + warning.text) + '\n';
 }
 
 void keepLastError(const spectral::Error& error) {

@@ -2,14 +2,14 @@
 
 #include <QtGlobal>
 #include <string>
-#include <vector>
 
+#include "core/contract/warning.h"
 #include "core/support/errors.h"
 
 // The messages of a filter, as pymeshlab drops the strings of a report.
 
 /// Keeps the messages of the latest filter run in this thread: none while it runs or if it failed.
-void keepLastMessages(const std::string& summary, const std::vector<std::string>& warnings);
+void keepLastMessages(const std::string& summary, const spectral::Warnings& warnings);
 
 /// Keeps the error of that run; pymeshlab has one class for all.
 void keepLastError(const spectral::Error& error);
@@ -17,7 +17,7 @@ void keepLastError(const spectral::Error& error);
 // For Python, which looks these up by name in the plugin's library. UTF-8, one copy per thread,
 // valid until a filter of this plugin runs in the calling thread again.
 
-/// The warnings, each followed by a newline; empty if there are none.
+/// The warnings, each after its code and a blank, and before a newline; empty if there are none.
 extern "C" Q_DECL_EXPORT const char* meshlab_spectral_warnings();
 
 /// What was found and done, in one line; empty if the numbers of the report say it all.

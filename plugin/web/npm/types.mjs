@@ -44,6 +44,8 @@ export interface Result<Report> {
   summary: string;
   /** Problems that were not errors, and what to do about them. */
   warnings: string[];
+  /** For each, what it is about, such as \`thin_parts\`. */
+  warningCodes: string[];
 }
 
 /** What a filter rejects. The mesh it was given is never changed. */

@@ -115,7 +115,7 @@ function show(options) {
     numbers.append(Object.assign(document.createElement('summary'), {textContent: 'All numbers'}), lines.slice(2).map((line) => line.trim()).join('\n'));
     at('log').append(numbers);
   }
-  for (const warning of result.warnings) if (!result.text.includes(warning)) say(warning, 'warning');
+  result.warnings.forEach((warning, i) => result.warningCodes[i] === 'nothing_removed' || say(warning, 'warning'));
   at('same').textContent = sameRun(result.filter, options, mesh.name, mesh.sizes);
   view?.move(result.vertices ?? mesh.V, 1);
   const colors = at('colors').options;

@@ -127,8 +127,8 @@ TEST(EqualizerPreview, WarnsLikeTheRunWhereAComponentLeavesOneThatItTouched) {
         for (const FilterOutput& output :
              {apply(filter, input, given), preview(filter, input, given, kept)}) {
             ASSERT_EQ(output.warnings.size(), expected) << gain;
-            for (const std::string& warning : output.warnings)
-                EXPECT_EQ(warning.find("1 of 2 components moves up to"), 0u);
+            for (const Warning& warning : output.warnings)
+                EXPECT_EQ(warning.text.find("1 of 2 components moves up to"), 0u);
         }
     }
 }

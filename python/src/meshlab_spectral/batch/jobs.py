@@ -58,6 +58,8 @@ class FileResult:
         the filter failed.
     warnings
         All warnings in the report: problems that were not errors, and what to do about them.
+    warning_codes
+        For each, what it is about.
     input_sha256, output_sha256
         SHA-256 of the files; None if missing.
     side_files
@@ -81,6 +83,7 @@ class FileResult:
     options: dict[str, Any] = field(default_factory=dict)
     report: dict[str, Any] | None = None
     warnings: list[str] = field(default_factory=list)
+    warning_codes: list[str] = field(default_factory=list)
     input_sha256: str | None = None
     output_sha256: str | None = None
     side_files: dict[str, str] = field(default_factory=dict)

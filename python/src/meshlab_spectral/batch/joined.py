@@ -13,6 +13,7 @@ from meshlab_spectral.batch.task import digests
 from meshlab_spectral.errors import SpectralError
 from meshlab_spectral.files.whole_files import file_trouble
 from meshlab_spectral.plugin.versions import versions
+from meshlab_spectral.warned import warned, with_warnings
 from meshlab_spectral.workers.processes import Processes
 
 
@@ -42,7 +43,7 @@ def run_joined(processes: Processes, jobs: Sequence[Job]) -> list[FileResult]:
             for one, scratch, largest in zip(own, scratches, report.pop("largest"), strict=True):
                 one |= digests(scratch) | {"outcome": "filtered" if largest else "unchanged"}
         common |= {"report": report, "peak_memory": answer.peak_memory}
-        own[0]["warnings"] = report["warnings"]  # once, not for every file
+        own[0] |= with_warnings({}, warned(report))  # once, not for every file
     except SpectralError as error:
         common["reason"] = str(error)
     except OSError as error:

@@ -11,7 +11,6 @@ import contextlib
 import io
 import json
 import os
-import re
 import threading
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from pathlib import Path
@@ -19,11 +18,11 @@ from typing import Any, get_args
 
 from meshlab_spectral.batch.jobs import FileResult, Outcome
 from meshlab_spectral.errors import BatchError, InputError
+from meshlab_spectral.warned import Warned, warned
 
 DEFAULT_NAME = "batch_report.jsonl"
 
 _BEGIN = b'{"kind": '  # start of every line
-_NUMBER = re.compile(r"\d+([.,]\d+)*(e[-+]?\d+)?")
 _END_OF_TIME = 1e12  # seconds since 1970; comparison with it also rejects NaN and infinity
 
 
@@ -136,16 +135,17 @@ class Report:
             self._write(b"\n")
 
 
-def grouped_warnings(warnings: Mapping[str, Sequence[str]]) -> list[dict[str, Any]]:
-    """Group warnings of many files that differ only in their numbers, most frequent first.
+def grouped_warnings(warnings: Mapping[str, Sequence[Warned]]) -> list[dict[str, Any]]:
+    """Group warnings of many files by their codes, most frequent first.
 
-    `warnings` maps the name of each file to its warnings. Each group has "warning", the text in
-    the first file, and "files", the names of all of them.
+    `warnings` maps the name of each file to its warnings. Each group has "code", "warning", the
+    text in the first file, and "files", the names of all of them.
     """
     groups: dict[str, dict[str, Any]] = {}
     for name, texts in sorted(warnings.items()):
         for text in texts:
-            group = groups.setdefault(_NUMBER.sub("0", text), {"warning": text, "files": []})
+            new = {"code": text.code, "warning": text, "files": []}
+            group = groups.setdefault(text.code, new)
             if group["files"][-1:] != [name]:  # several meshes of a file may share it
                 group["files"].append(name)
     return sorted(groups.values(), key=lambda group: -len(group["files"]))
@@ -156,13 +156,13 @@ class Tally:
 
     def __init__(self) -> None:
         self.counts = dict.fromkeys(get_args(Outcome), 0)  # by outcome
-        self.warnings: dict[str, list[str]] = {}  # by the name of the file
+        self.warnings: dict[str, list[Warned]] = {}  # by the name of the file
 
     def add(self, result: FileResult) -> None:
         """Count a result."""
         self.counts[result.outcome] += 1
-        if result.warnings:
-            self.warnings[result.name] = result.warnings
+        if found := warned(vars(result)):
+            self.warnings[result.name] = found
 
     def warnings_by_kind(self) -> dict[str, Any]:
         """Return the number of files with warnings, and the warnings as from `grouped_warnings`."""
@@ -228,5 +228,6 @@ _FITTING: dict[str, Callable[[Any], bool]] = {
     "outcome": lambda value: isinstance(value, str),
     "side_files": _is_digests,
     "warnings": lambda value: isinstance(value, list),
+    "warning_codes": lambda value: isinstance(value, list),
     "report": lambda value: value is None or isinstance(value, dict),
 }

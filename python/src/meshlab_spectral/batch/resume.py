@@ -8,6 +8,7 @@ from typing import Any
 
 from meshlab_spectral.batch.jobs import FileResult, Job
 from meshlab_spectral.batch.storage import digest_at, sibling
+from meshlab_spectral.warned import warned, with_warnings
 
 Records = dict[str, list[dict[str, Any]]]
 
@@ -62,7 +63,7 @@ def _proof(
             return job.result(
                 "already done",
                 report=record.get("report"),
-                warnings=record.get("warnings", []),
+                **with_warnings({}, warned(record)),
                 input_sha256=source,
                 output_sha256=output,
                 side_files=record.get("side_files", {}),

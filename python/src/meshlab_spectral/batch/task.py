@@ -15,6 +15,7 @@ from meshlab_spectral.errors import (
 )
 from meshlab_spectral.files.whole_files import file_trouble, side_files
 from meshlab_spectral.plugin.versions import versions
+from meshlab_spectral.warned import Warned, warned, with_warnings
 from meshlab_spectral.workers.processes import Processes, ProcessesEndedError
 
 
@@ -41,7 +42,7 @@ def run_job(processes: Processes, job: Job) -> FileResult:
                 result |= written
         result["outcome"] = _outcome(job, answer.report)
         result |= {"report": answer.report, "peak_memory": answer.peak_memory}
-        result["warnings"] = _warnings(answer.report)
+        result |= with_warnings({}, _warnings(answer.report))
     except ProcessesEndedError:
         raise
     except ProcessStartError as error:
@@ -65,10 +66,10 @@ def _outcome(job: Job, report: dict[str, Any]) -> Outcome:
     return "unchanged" if report.get("max_displacement") == 0 else "filtered"
 
 
-def _warnings(report: dict[str, Any]) -> list[str]:
+def _warnings(report: dict[str, Any]) -> list[Warned]:
     """Collect the warnings of a file and its filter, or of all the plugin's filters in a script."""
     parts = [*(one.get("report", {}) for one in report.get("filters", [])), report]
-    return [warning for part in parts for warning in part.get("warnings", [])]
+    return [warning for part in parts for warning in warned(part)]
 
 
 def digests(scratch: Path) -> dict[str, Any]:

@@ -272,8 +272,8 @@ denoise_command = _command_with(DenoiseOptions, DENOISE_HELP)
 def _print_reports(report: dict[str, Any], source: str, target: str) -> None:
     for one in report.get("meshes", [report]):
         name = f", {one['mesh']}" if "meshes" in report else ""
-        # The warnings may contain the summary, after the mesh's name if there are several.
-        if (told := one.get("summary")) and not any(w.endswith(told) for w in report["warnings"]):
+        # If nothing was removed, a warning has said why.
+        if (told := one.get("summary")) and "nothing_removed" not in one["warning_codes"]:
             print_result(f"{source}{name}: {told}")
         print_result(report_table(one, f"{source} -> {target}{name}", VERBOSITY.verbose))
 

@@ -20,7 +20,7 @@ def report_table(report: dict[str, Any], title: str, in_full: bool = False) -> T
     same = ": unchanged" if report["max_displacement"] == 0 else ""
     rows = _rows(report)
     if in_full:
-        numbers = {name: value for name, value in report.items() if name != "warnings"}
+        numbers = {name: value for name, value in report.items() if "warning" not in name}
         rows += [(name, _plain(x)) for name, x in numbers.items() if not isinstance(x, str)]
     return table_of(rows, title + same)
 

@@ -17,6 +17,7 @@ from meshlab_spectral.files.meshes import in_scene, load_parts
 from meshlab_spectral.filters.arrays import lumped_areas, mesh_arrays
 from meshlab_spectral.filters.representations import brief, line, table
 from meshlab_spectral.formats.document import joined
+from meshlab_spectral.warned import Warned, warned, with_warnings
 
 Array = NDArray[np.float64]
 Arrays = tuple[Array, NDArray[Any]]
@@ -109,19 +110,19 @@ class Comparison:
     areas: tuple[float, float]
     volumes: tuple[float, float] | None
     beyond: dict[str, float] = field(default_factory=dict)
-    warnings: list[str] = field(default_factory=list)
+    warnings: list[Warned] = field(default_factory=list)
 
     @property
     def report(self) -> dict[str, Any]:
         """All numbers but those at the vertices, for JSON."""
-        return {
+        numbers = {
             "same_faces": self.same_faces,
             "deviations": {name: one.numbers for name, one in self.deviations.items()},
             "area": list(self.areas),
             "volume": None if self.volumes is None else list(self.volumes),
             "beyond": self.beyond,
-            "warnings": self.warnings,
         }
+        return with_warnings(numbers, self.warnings)
 
     def save(self, archive: Path) -> None:
         """Write what `report` leaves out, as an archive of NumPy."""
@@ -144,7 +145,7 @@ class Comparison:
         }
         meshes = (arrays["V"], arrays["F"]), (arrays["W"], arrays["G"])
         volumes = report["volume"] and tuple(report["volume"])
-        areas, rest = tuple(report["area"]), (report["beyond"], report["warnings"])
+        areas, rest = tuple(report["area"]), (report["beyond"], warned(report))
         return cls(*meshes, report["same_faces"], deviations, areas, volumes, *rest)
 
     @property
@@ -250,7 +251,7 @@ def compare(a: Any, b: Any, *, max_distance: float | None = None) -> Comparison:
     )
 
 
-def _warnings(V: Array, W: Array, beyond: dict[str, float]) -> list[str]:
+def _warnings(V: Array, W: Array, beyond: dict[str, float]) -> list[Warned]:
     """Return what the numbers may be due to."""
     sizes = [float(np.linalg.norm(np.ptp(points, axis=0))) for points in (V, W)]
     ratio = max(sizes) / min(sizes)
@@ -258,12 +259,14 @@ def _warnings(V: Array, W: Array, beyond: dict[str, float]) -> list[str]:
     for factor in _FACTORS:
         if abs(ratio / factor - 1) < _SAME_SIZE:
             larger, smaller = ("a", "b") if sizes[0] > sizes[1] else ("b", "a")
-            found.append(
-                f"{larger} is {factor:g} times as large as {smaller}: are the units equal?"
-            )
+            text = f"{larger} is {factor:g} times as large as {smaller}: are the units equal?"
+            found.append(Warned("unequal_sizes", text))
     found += [
-        f"{share:.1%} of the surface of {name[0]} lies beyond the rim of the other, or too far "
-        "away, and is left out"
+        Warned(
+            "beyond_rim",
+            f"{share:.1%} of the surface of {name[0]} lies beyond the rim of the other, or too "
+            "far away, and is left out",
+        )
         for name, share in beyond.items()
         if share > 0
     ]

@@ -16,6 +16,7 @@ from meshlab_spectral.filters.options import SpectrumOptions
 from meshlab_spectral.filters.running import plain, run
 from meshlab_spectral.formats.document import Part, joined
 from meshlab_spectral.plugin.loading import DENOISE_NAME, load
+from meshlab_spectral.warned import Warned, warned, with_warnings
 
 _OF_SURFACE = ("components", "joined_vertices", "unreferenced_vertices")
 _OF_NOISE = (
@@ -56,6 +57,16 @@ def mesh_info(source: Path, on_stage: StageCallback, mesh: str | None = None) ->
     spectrum = run(SpectrumOptions.FILTER, V, F, {}, progress=on_stage).report
     on_stage("looking for noise", None)
     denoised = run(DENOISE_NAME, V, F, {}, progress=on_stage).report
+    copies = [
+        Warned(
+            "placement",
+            f"{part.name} is placed {1 + len(part.copies)} times: it is described once, in its "
+            "first place",
+        )
+        for part in parts
+        if part.copies
+    ]
+    noise = [one for one in warned(denoised) if one.code != "nothing_removed"]
     report = {
         "meshes": [part.name for part in parts if part.name],
         "vertices": len(V),
@@ -67,15 +78,8 @@ def mesh_info(source: Path, on_stage: StageCallback, mesh: str | None = None) ->
         **{name: spectrum[name] for name in _LENGTHS},
         "noise_summary": spectrum["summary"],  # what was found; denoise says what it did
         **{name: denoised[name] for name in _OF_NOISE},
-        "warnings": [
-            f"{part.name} is placed {1 + len(part.copies)} times: it is described once, in its "
-            "first place"
-            for part in parts
-            if part.copies
-        ]
-        + [warning for warning in denoised["warnings"] if warning != denoised["summary"]],
     }
-    return plain(report)
+    return plain(with_warnings(report, copies + noise))
 
 
 def _boundary_loops(V: NDArray[np.float64], F: NDArray[np.int64]) -> int:

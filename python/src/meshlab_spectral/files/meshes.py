@@ -43,6 +43,7 @@ from meshlab_spectral.formats.placement import IDENTITY, Placement
 from meshlab_spectral.formats.side_files import copy_side_files
 from meshlab_spectral.plugin.loading import load
 from meshlab_spectral.plugin.mesh_sets import DETAILS, NOISE_HEIGHT, mesh_set_of, write
+from meshlab_spectral.warned import Warned, warned, with_warnings
 
 # Called with the current stage, and the fraction of it that is done or None.
 StageCallback = Callable[[str, float | None], object]
@@ -240,7 +241,7 @@ def joined_to_scratches(
     for document, scratch, end in zip(documents, scratches, ends.tolist(), strict=True):
         after = shapes[end - len(document.parts) : end]
         told = document.warnings + document.save(scratch, after)
-        warnings += [f"{document.path.name}: {warning}" for warning in told]
+        warnings += [warning.of(document.path.name) for warning in told]
         moved = np.vstack(after) - np.vstack([part.vertices for part in document.parts])
         largest.append(float(np.linalg.norm(moved, axis=1).max(initial=0.0)))
     return {**_report(names, reports, warnings), "largest": largest}
@@ -253,7 +254,7 @@ def _moved(
     on_stage: StageCallback,
     verbose: bool,
     region: Region | None = None,
-) -> tuple[list[Array], list[str], list[dict[str, Any]], list[str]]:
+) -> tuple[list[Array], list[str], list[dict[str, Any]], list[Warned]]:
     """Filter chosen parts, each surface on its own.
 
     Returns the vertices of all parts; the names of the surfaces, and the report of each; warnings.
@@ -391,21 +392,20 @@ def _signal(part: Part) -> dict[str, Array]:
     return {} if part.quality is None else {"v_scalar_array": part.quality}
 
 
-def _report(names: list[str], reports: list[dict[str, Any]], warnings: list[str]) -> dict[str, Any]:
+def _report(
+    names: list[str], reports: list[dict[str, Any]], warnings: list[Warned]
+) -> dict[str, Any]:
     """Combine the reports of all meshes."""
     if len(reports) == 1:
         named = {"mesh": names[0]} if names[0] else {}
-        return {**named, **reports[0], "warnings": reports[0]["warnings"] + warnings}
-    each = [
-        f"{name}: {warning}"
-        for name, report in zip(names, reports, strict=True)
-        for warning in report["warnings"]
-    ]
-    return {
-        "meshes": [{"mesh": name, **one} for name, one in zip(names, reports, strict=True)],
+        return with_warnings({**named, **reports[0]}, warned(reports[0]) + warnings)
+    both = list(zip(names, reports, strict=True))
+    combined = {
+        "meshes": [{"mesh": name, **one} for name, one in both],
         "max_displacement": max(report["max_displacement"] for report in reports),
-        "warnings": each + warnings,
     }
+    each = [warning.of(name) for name, report in both for warning in warned(report)]
+    return with_warnings(combined, each + warnings)
 
 
 def _through_meshlab(
@@ -433,7 +433,7 @@ def _through_meshlab(
         copyfile(source, scratch)
         textures = mesh_set.current_mesh().textures()
         warnings = copy_side_files(source, scratch, [one for one in textures if one != DUMMY])
-        return {**report, "warnings": report.get("warnings", []) + warnings}
+        return with_warnings(report, warned(report) + warnings)
     given = None
     if document is not None and not is_script:
         given = () if lacking is None else document.contents
@@ -444,7 +444,7 @@ def _through_meshlab(
         read = None if lacking is None else mesh_set
         warnings = left_behind(document, scratch, read, lacking or ())
     warnings += rounding_warnings(before, mesh_set.current_mesh().vertex_matrix(), scratch)
-    return {**report, "warnings": report.get("warnings", []) + warnings}
+    return with_warnings(report, warned(report) + warnings)
 
 
 def _loaded(

@@ -25,6 +25,7 @@ from meshlab_spectral.formats.opening import PATCHED
 from meshlab_spectral.formats.side_files import beside, is_outside
 from meshlab_spectral.formats.stl import HEADER, TRIANGLE
 from meshlab_spectral.plugin.mesh_sets import reason_of
+from meshlab_spectral.warned import Warned
 
 # Formats in which MeshLab joins triangles back into the polygons that it has read.
 _POLYGON_FORMATS = (".obj", ".off")
@@ -248,19 +249,19 @@ def set_quality(mesh_set: Any, quality: Any) -> None:
     mesh_set.compute_scalar_by_function_per_vertex(q=_QUALITY)
 
 
-def left_by_meshlab(source: Path, target: Path, mesh_set: Any) -> list[str]:
+def left_by_meshlab(source: Path, target: Path, mesh_set: Any) -> list[Warned]:
     """Return the warning about what a file loses that MeshLab reads and rewrites."""
     content = source.read_bytes()
     lost = [loss for loss, pattern in _SCENES.items() if pattern.search(content)]
     if DUMMY in mesh_set.current_mesh().textures():
         lost.append("textures that MeshLab does not find")
     what = ", ".join(lost or ["what MeshLab does not keep of it, such as units, transforms, names"])
-    return [f"{target.name} is rewritten by MeshLab, and loses {what}"]
+    return [Warned("format_loss", f"{target.name} is rewritten by MeshLab, and loses {what}")]
 
 
 def left_behind(
     document: Document, target: Path, mesh_set: Any = None, lacking: Collection[str] = ()
-) -> list[str]:
+) -> list[Warned]:
     """Return the warning, if any, about what `target`, in another format than `document`, loses.
 
     Placements are in the coordinates of `target`. `mesh_set` is what MeshLab has read of the
@@ -277,7 +278,7 @@ def left_behind(
     lost = [content for content in document.contents if content not in written]
     if mesh_set is not None and DUMMY in mesh_set.current_mesh().textures():
         lost.append("textures that MeshLab does not find")
-    return [f"{target.name} loses {', '.join(lost)}"] if lost else []
+    return [Warned("format_loss", f"{target.name} loses {', '.join(lost)}")] if lost else []
 
 
 def _has_non_manifold_edges(mesh_set: Any) -> bool:

@@ -9,6 +9,7 @@ import numpy as np
 
 from meshlab_spectral.formats.digits import in_single_precision, precision_warnings
 from meshlab_spectral.formats.document import Array
+from meshlab_spectral.warned import Warned
 
 
 def _decimals(numbers: Array) -> Array:
@@ -29,7 +30,7 @@ _ROUNDED: dict[str, tuple[Callable[[Array], Array], str]] = {
 }
 
 
-def rounding_warnings(before: Array, after: Array, scratch: Path) -> list[str]:
+def rounding_warnings(before: Array, after: Array, scratch: Path) -> list[Warned]:
     """Return the warning, if any, that MeshLab writes this format with too few digits."""
     rounded = _ROUNDED.get(scratch.suffix[1:].lower())
     if rounded is None or before.shape != after.shape:

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from meshlab_spectral import _core
 from meshlab_spectral._core import first_equal_rows
 from meshlab_spectral.formats.document import Array, Part, joined
+from meshlab_spectral.warned import Warned
 
 
 def pieces(parts: Sequence[Part]) -> list[list[Part]]:
@@ -50,7 +51,7 @@ def _split(rows: NDArray[Any], parts: Sequence[Part]) -> list[NDArray[Any]]:
 
 def moved_alike(
     parts: Sequence[Part], moved: Sequence[Array], chosen: Sequence[Part]
-) -> tuple[list[Array], list[str]]:
+) -> tuple[list[Array], list[Warned]]:
     """Let parts move alike where they touch (contacts.h), by their mean displacement.
 
     Parameters
@@ -83,7 +84,7 @@ def _parted(
     F: NDArray[np.int32],
     displacement: Array,
     chosen: Sequence[Part],
-) -> list[str]:
+) -> list[Warned]:
     """Return the warning, if any, that parts leave others that stay, with vertices of faces."""
     owner = np.repeat(np.arange(len(parts)), [len(part.vertices) for part in parts])
     filtered = set(map(id, chosen))
@@ -97,7 +98,8 @@ def _parted(
     if not leaves.any():
         return []
     farthest = np.linalg.norm(displacement[leaves], axis=1).max()
-    return [
+    text = (
         f"{len(np.unique(place[leaves]))} vertices lie on meshes that are not filtered: there "
         f"the meshes part by up to {farthest:.3g}; leave out the name to filter all"
-    ]
+    )
+    return [Warned("parted_meshes", text)]

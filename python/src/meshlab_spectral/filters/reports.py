@@ -78,6 +78,8 @@ class _FilterReport(TypedDict):
     """Signed volume of the surface, length³; meaningless unless `has_volume`."""
     warnings: list[str]
     """Problems that were not errors, and what to do about them."""
+    warning_codes: list[str]
+    """For each of them, what it is about."""
 
 
 class FilterReport(_FilterReport, total=False):
@@ -152,6 +154,8 @@ class _DenoiseReport(TypedDict):
     """What was found and done, in one line."""
     warnings: list[str]
     """Problems that were not errors, and what to do about them."""
+    warning_codes: list[str]
+    """For each of them, what it is about."""
 
 
 class DenoiseReport(_DenoiseReport, total=False):
@@ -164,6 +168,8 @@ class DenoiseReport(_DenoiseReport, total=False):
 class _ScalarsReport(TypedDict):
     warnings: list[str]
     """Problems that were not errors, and what to do about them."""
+    warning_codes: list[str]
+    """For each of them, what it is about."""
 
 
 class ScalarsReport(_ScalarsReport, total=False):
@@ -232,6 +238,8 @@ class ColorsReport(TypedDict):
     """Number of vertices whose value is NaN, unchanged."""
     warnings: list[str]
     """Problems that were not errors, and what to do about them."""
+    warning_codes: list[str]
+    """For each of them, what it is about."""
 
 
 class SpectrumReport(TypedDict):
@@ -281,6 +289,8 @@ class SpectrumReport(TypedDict):
     """What was found and done, in one line."""
     warnings: list[str]
     """Problems that were not errors, and what to do about them."""
+    warning_codes: list[str]
+    """For each of them, what it is about."""
 
 
 class _TextureReport(TypedDict):
@@ -338,6 +348,8 @@ class _TextureReport(TypedDict):
     """Cutoff of the L-filter, length."""
     warnings: list[str]
     """Problems that were not errors, and what to do about them."""
+    warning_codes: list[str]
+    """For each of them, what it is about."""
 
 
 class TextureReport(_TextureReport, total=False):

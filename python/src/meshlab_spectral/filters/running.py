@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
@@ -16,6 +16,7 @@ from meshlab_spectral.filters.arrays import real_numbers
 from meshlab_spectral.filters.progress import Progress, shown
 from meshlab_spectral.filters.representations import Report
 from meshlab_spectral.plugin import limits
+from meshlab_spectral.warned import Warned, with_warnings
 
 Array = NDArray[np.float64]
 Gain = Callable[[Array], ArrayLike]
@@ -136,10 +137,15 @@ def run(
             threads=thread_count(threads),
             is_shell=SHELL in os.environ,
         )
-    report = {**result.pop("report"), "warnings": result.pop("warnings")}
+    report = _reported(result.pop("report"), result.pop("warnings"))
+    result["columns"] = [_reported(r, w) for r, w in result.get("columns", [])] or None
     if summary := result.pop("summary"):
         report["summary"] = summary
     return Run(report, **result)
+
+
+def _reported(report: dict[str, Any], warnings: Iterable[tuple[str, str]]) -> dict[str, Any]:
+    return with_warnings(report, [Warned(*one) for one in warnings])
 
 
 def thread_count(threads: int | None) -> int:

@@ -18,6 +18,7 @@ from meshlab_spectral.filters.progress import Progress, shown
 from meshlab_spectral.filters.reports import ColorsReport, ScalarsReport
 from meshlab_spectral.filters.representations import Report
 from meshlab_spectral.filters.running import Gain, Run, plain, require_no_type, run
+from meshlab_spectral.warned import Warned, warned, with_warnings
 
 if TYPE_CHECKING:
     from typing_extensions import Unpack
@@ -137,12 +138,11 @@ def filter_scalars(
             for j, column in zip(block, done.columns or [done.report], strict=True):
                 reports[j] = Report(plain(column))
     if Q.ndim == 2:
-        warnings = [f"column {j}: {w}" for j, r in enumerate(reports) for w in r["warnings"]]
-        warnings += labels
-        return filtered, cast(ScalarsReport, Report(columns=reports, warnings=warnings))
-    report = reports[0]
-    report["warnings"] += labels
-    return filtered[:, 0], cast(ScalarsReport, report)
+        each = [w.of(f"column {j}") for j, one in enumerate(reports) for w in warned(one)]
+        together = with_warnings({"columns": reports}, each + labels)
+        return filtered, cast(ScalarsReport, Report(together))
+    report = with_warnings(reports[0], warned(reports[0]) + labels)
+    return filtered[:, 0], cast(ScalarsReport, Report(report))
 
 
 @takes_options(FilterOptions, names=TransferKeywords.__annotations__)
@@ -206,17 +206,18 @@ def _filtered_together(fields: NDArray[np.float64]) -> Iterator[list[int]]:
             yield columns[first : first + _TOGETHER]
 
 
-def _warning_of_labels(values: NDArray[Any]) -> list[str]:
+def _warning_of_labels(values: NDArray[Any]) -> list[Warned]:
     """Warn of integers that may be labels: few different ones, and each often."""
     if not (np.issubdtype(values.dtype, np.integer) or values.dtype == bool):
         return []
     count = len(np.unique(values))
     if not 1 < count <= min(_MOST_LABELS, values.size // 4):
         return []
-    return [
+    text = (
         f"values: {count} different integers are averaged to fractions; if they are labels, filter "
         "where each of them is, and take the label with most weight: see help(filter_scalars)"
-    ]
+    )
+    return [Warned("labels", text)]
 
 
 def _smoothing(

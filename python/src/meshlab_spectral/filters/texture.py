@@ -104,6 +104,7 @@ class SurfaceTexture:
     vertices_too_thin: int
     error_estimate: float
     warnings: list[str]
+    warning_codes: list[str]
     Sal: float | None = None
     Str: float | None = None
     form_radius: float | None = None
@@ -133,7 +134,7 @@ class SurfaceTexture:
     def from_report(cls, report: Mapping[str, Any], height: NDArray[np.float64]) -> SurfaceTexture:
         """Return the texture of a `report`, with the heights of the vertices or none."""
         numbers: dict[str, Any] = {
-            name: np.array(value) if isinstance(value, list) and name != "warnings" else value
+            name: np.array(value) if isinstance(value, list) and "warning" not in name else value
             for name, value in report.items()
         }
         return cls(height=height, **numbers)

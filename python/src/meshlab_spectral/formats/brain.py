@@ -36,6 +36,7 @@ from meshlab_spectral.formats.names import (
 from meshlab_spectral.formats.normals import are_normals, following_normals
 from meshlab_spectral.formats.side_files import beside, copy_side_files
 from meshlab_spectral.formats.text import numbers_from
+from meshlab_spectral.warned import Warned
 
 _TEXT, _BINARY, _PACKED, _EXTERNAL = 1, 2, 3, 4  # encodings of GIFTI
 _MOST_DIMENSIONS = 6  # in GIFTI
@@ -74,7 +75,7 @@ def read(path: Path) -> Document:
 class _FreeSurfer(Document):
     begin: int  # byte offset of the coordinates
 
-    def save(self, target: Path, moved: Sequence[Array]) -> list[str]:
+    def save(self, target: Path, moved: Sequence[Array]) -> list[Warned]:
         before, after = self.parts[0].vertices, moved[0]
         copyfile(self.path, target)
         with target.open("r+b") as file:
@@ -107,7 +108,7 @@ class _Quadrilaterals(Document):
     counts: bytes
     tail: bytes  # the quadrilaterals, and what follows them
 
-    def save(self, target: Path, moved: Sequence[Array]) -> list[str]:
+    def save(self, target: Path, moved: Sequence[Array]) -> list[Warned]:
         before, after = self.parts[0].vertices, moved[0]
         if (after == before).all():
             copyfile(self.path, target)
@@ -151,7 +152,7 @@ class _Gifti(Document):
     points: Any  # its GiftiDataArray with the coordinates
     vectors: list[Any]  # its arrays of normals
 
-    def save(self, target: Path, moved: Sequence[Array]) -> list[str]:
+    def save(self, target: Path, moved: Sequence[Array]) -> list[Warned]:
         (part,), (after,) = self.parts, moved
         external = {array.ext_fname for array in self.image.darrays if array.encoding == _EXTERNAL}
         if (after == part.vertices).all():
@@ -171,7 +172,7 @@ class _Gifti(Document):
         is_packed = target.suffix.lower() == ".gz"
         target.write_bytes(gzip.compress(content, mtime=0) if is_packed else content)
         warnings = [
-            f"the numbers of {shown(name)} are written into {target.name}"
+            Warned("side_file", f"the numbers of {shown(name)} are written into {target.name}")
             for name in sorted(external)
         ]
         return warnings + precision_warnings(part.vertices, after, target.name)

@@ -7,6 +7,7 @@ from collections.abc import Callable
 import numpy as np
 
 from meshlab_spectral.formats.document import Array
+from meshlab_spectral.warned import Warned
 
 # Tolerated rounding error, as a fraction of the displacement.
 _TOLERATED = 0.01
@@ -65,16 +66,17 @@ def precision_warnings(
     name: str,
     rounded: Callable[[Array], Array] = in_single_precision,
     kept: str = "single precision",
-) -> list[str]:
+) -> list[Warned]:
     """Return the warning, if any, that the digits in the file `name` are too few."""
     message = rounding_loss(before, after, rounded, kept)
     remedy = "choose .ply or .obj, or move the mesh to the origin first"
-    return [f"{name}: {message}: {remedy}"] if message else []
+    return [Warned("rounded", f"{name}: {message}: {remedy}")] if message else []
 
 
-def widening_warnings(message: str | None) -> list[str]:
+def widening_warnings(message: str | None) -> list[Warned]:
     """Return the warning that a file is written in double precision, if `message` says why."""
-    return [f"coordinates are written in double precision, since {message}"] if message else []
+    text = f"coordinates are written in double precision, since {message}"
+    return [Warned("double_precision", text)] if message else []
 
 
 def digits_for(before: Array, after: Array) -> int:

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from meshlab_spectral.errors import MeshFileError
 from meshlab_spectral.formats.causes import unreadable
 from meshlab_spectral.formats.side_files import is_outside
+from meshlab_spectral.warned import Warned
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
@@ -82,7 +83,7 @@ class Document(ABC):
     path: Path
     parts: list[Part]
     contents: list[str] = field(default_factory=list)
-    warnings: list[str] = field(default_factory=list)
+    warnings: list[Warned] = field(default_factory=list)
     largest_face: int = field(default=3, kw_only=True)
 
     def side_files(self) -> Iterable[str]:
@@ -99,7 +100,7 @@ class Document(ABC):
         return not any(is_outside(self.path, name) for name in self.side_files())
 
     @abstractmethod
-    def save(self, target: Path, moved: Sequence[Array]) -> list[str]:
+    def save(self, target: Path, moved: Sequence[Array]) -> list[Warned]:
         """Write the file with new coordinates, in its own format.
 
         Unchanged coordinates keep their bytes. Normals follow the new shape.

@@ -33,6 +33,7 @@ from meshlab_spectral.formats.names import shown
 from meshlab_spectral.formats.normals import following_normals
 from meshlab_spectral.formats.placement import IDENTITY, Placement, placement_of
 from meshlab_spectral.formats.side_files import copy_side_files
+from meshlab_spectral.warned import Warned
 
 _TRIANGLES, _STRIP, _FAN = 4, 5, 6
 _LISTED = ("materials", "textures", "skins", "animations", "cameras")
@@ -75,11 +76,11 @@ class GltfDocument(Document):
 
     _asset: Asset = field(kw_only=True, repr=False)
     _meshes: list[_Mesh] = field(default_factory=list, kw_only=True, repr=False)
-    _compression: list[str] = field(default_factory=list, kw_only=True, repr=False)
+    _compression: list[Warned] = field(default_factory=list, kw_only=True, repr=False)
 
-    def save(self, target: Path, moved: Sequence[Array]) -> list[str]:
+    def save(self, target: Path, moved: Sequence[Array]) -> list[Warned]:
         """Write the asset with new positions, normals and tangents; see `Document`."""
-        warnings: list[str] = []
+        warnings: list[Warned] = []
         with reporting_faults(self.path):
             asset = copy.deepcopy(self._asset)
             users = defaultdict[int, list[_User]](list)
@@ -146,9 +147,11 @@ def _add_part(
     document.parts.append(part)
     document._meshes.append(_Mesh(number, rows, table, placement))
     if any("skin" in node for node, _ in nodes):
-        document.warnings.append(f"{name} has a skeleton: lengths are measured without its pose")
+        text = f"{name} has a skeleton: lengths are measured without its pose"
+        document.warnings.append(Warned("skeleton", text))
     if any("targets" in primitive for primitive in mesh["primitives"]):
-        document.warnings.append(f"{name}: its morph targets are kept as displacements")
+        text = f"{name}: its morph targets are kept as displacements"
+        document.warnings.append(Warned("kept_in_file", text))
 
 
 def _read_table(asset: Asset, key: _Key) -> Array:
@@ -264,7 +267,7 @@ def _users(asset: Asset, mesh: _Mesh, part: Part, table: Array) -> Iterator[tupl
                 yield accessor, _User(part.name, name, primitives[key], used[rows], *tables)
 
 
-def _put(asset: Asset, accessor: int, users: list[_User]) -> list[str]:
+def _put(asset: Asset, accessor: int, users: list[_User]) -> list[Warned]:
     """Write what users have made of an accessor to it, and to new ones where they disagree."""
     before = users[0].before
     values, taken, apart = before.copy(), np.zeros(len(before), bool), list[_User]()
@@ -283,8 +286,9 @@ def _put(asset: Asset, accessor: int, users: list[_User]) -> list[str]:
         own = number if user.is_common else asset.put(accessor, before, user.after)
         for primitive in user.primitives:
             primitive["attributes"][user.attribute] = own
+    alike = f"vertices in common with {users[0].mesh} that move apart: it gets its own"
     return [
-        f"{user.mesh} has vertices in common with {users[0].mesh} that move apart: it gets its own"
+        Warned("parted_meshes", f"{user.mesh} has {alike}")
         for user in apart
         if user.attribute == "POSITION"
     ]

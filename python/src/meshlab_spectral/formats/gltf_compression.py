@@ -9,13 +9,14 @@ import numpy as np
 from meshlab_spectral.extras import check_extras
 from meshlab_spectral.formats.causes import unsupported
 from meshlab_spectral.formats.gltf_accessors import Asset, Json
+from meshlab_spectral.warned import Warned
 
 _DRACO = "KHR_draco_mesh_compression"
 _MESHOPT = ("EXT_meshopt_compression", "KHR_meshopt_compression")
 _TRIANGLES = 4
 
 
-def uncompress(asset: Asset) -> list[str]:
+def uncompress(asset: Asset) -> list[Warned]:
     """Let an asset have its geometry without compression; return a warning that says so.
 
     Draco is decoded by DracoPy, the extra "draco". Where a file has an uncompressed copy for
@@ -42,7 +43,8 @@ def uncompress(asset: Asset) -> list[str]:
             tree[key] = rest
         if not rest:
             tree.pop(key, None)
-    return [f"it is written without its compression, {', '.join(used)}"] if used else []
+    text = f"it is written without its compression, {', '.join(used)}"
+    return [Warned("uncompressed", text)] if used else []
 
 
 def _without(entry: Json, name: str) -> Any:

@@ -15,6 +15,7 @@ from meshlab_spectral.extras import check_extras
 from meshlab_spectral.formats.budget import Budget, guarded
 from meshlab_spectral.formats.causes import unreadable, unsupported
 from meshlab_spectral.formats.document import Array, Document, Indices, Part, check_vertices
+from meshlab_spectral.warned import Warned
 
 # What the libraries take, whatever the file: bytes.
 _OF_LIBRARY = 1 << 30
@@ -25,7 +26,7 @@ _Affine = tuple[float, float, float, float, float, float]
 class _HeightMap(Document):
     """A map, whose coordinates are not replaced: vertices of a mesh leave the grid."""
 
-    def save(self, target: Path, moved: Sequence[Array]) -> list[str]:
+    def save(self, target: Path, moved: Sequence[Array]) -> list[Warned]:
         raise FormatError(f"{target.name}: height maps are only read; name the output .ply")
 
 

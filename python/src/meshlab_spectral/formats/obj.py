@@ -21,6 +21,7 @@ from meshlab_spectral.formats.normals import following_normals
 from meshlab_spectral.formats.polygons import corners_of_triangles
 from meshlab_spectral.formats.side_files import beside, copy_side_files
 from meshlab_spectral.formats.text import Lines, lines_of, write_patched
+from meshlab_spectral.warned import Warned
 
 _CONTENTS = {
     "vn": "normals",
@@ -57,11 +58,11 @@ class _Obj(Document):
     normals: Array
     which: Indices  # the normal of each corner of the triangles; -1 where it has none
 
-    def save(self, target: Path, moved: Sequence[Array]) -> list[str]:
+    def save(self, target: Path, moved: Sequence[Array]) -> list[Warned]:
         part, after, which = self.parts[0], moved[0], self.which
         before, faces, content = part.vertices, part.faces, self.content
         starts, normal_starts, given = self.starts, self.normal_starts, self.normals
-        normals, warnings = given, list[str]()
+        normals, warnings = given, list[Warned]()
         if len(given):
             shaded = np.array((which >= 0).all(axis=1))
             if not shaded.all():
@@ -73,7 +74,8 @@ class _Obj(Document):
                 normals = following_normals(before, after, faces, given, which)
             if len(given) > len(self.normals):
                 more = len(given) - len(self.normals)
-                warnings.append(f"{more} normals are added, as others serve faces that turn apart")
+                text = f"{more} normals are added, as others serve faces that turn apart"
+                warnings.append(Warned("added_normals", text))
         changes = [(starts, 1, before, after, digits_for(before, after))]
         if len(given):
             changes.append((normal_starts, 1, given, normals, SINGLE))

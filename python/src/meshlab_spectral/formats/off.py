@@ -29,6 +29,7 @@ from meshlab_spectral.formats.document import (
 from meshlab_spectral.formats.normals import following_normals
 from meshlab_spectral.formats.polygons import triangles
 from meshlab_spectral.formats.text import Change, Lines, lines_of, whole, write_patched
+from meshlab_spectral.warned import Warned
 
 _REMEDY = "save it as PLY, or as text OFF with vertices x y z"
 
@@ -41,7 +42,7 @@ class _Off(Document):
     content: bytes
     rows: _Rows
 
-    def save(self, target: Path, moved: Sequence[Array]) -> list[str]:
+    def save(self, target: Path, moved: Sequence[Array]) -> list[Warned]:
         (part,), (after,) = self.parts, moved
         rows = self.rows
         digits = digits_for(part.vertices, after)

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from meshlab_spectral.formats.document import Array, Indices
+from meshlab_spectral.warned import Warned
 
 IDENTITY: Array = np.eye(4)
 _SAME_SCALE = 1e-6  # relative difference of singular values
@@ -44,7 +45,7 @@ class Placement:
         return result
 
 
-def placement_of(name: str, matrices: Sequence[Array] | Array, warnings: list[str]) -> Placement:
+def placement_of(name: str, matrices: Sequence[Array] | Array, warnings: list[Warned]) -> Placement:
     """Return the first placement of a mesh, or the identity if it has none or a singular one.
 
     The others become its copies, if they are not singular and show the mesh somewhere else. Appends
@@ -59,14 +60,20 @@ def placement_of(name: str, matrices: Sequence[Array] | Array, warnings: list[st
     )
     if is_flat[0]:
         warnings.append(
-            f"{name} is flattened by a transform of scale 0 where it is placed: it is filtered in "
-            "the size that it has without transforms"
+            Warned(
+                "placement",
+                f"{name} is flattened by a transform of scale 0 where it is placed: it is filtered "
+                "in the size that it has without transforms",
+            )
         )
         return Placement(IDENTITY, tuple(places))
     if (np.abs(scales[0] - scales) > _SAME_SCALE * scales[0]).any():
         warnings.append(
-            f"{name} is placed several times at different scales: lengths are those of its first "
-            "placement"
+            Warned(
+                "placement",
+                f"{name} is placed several times at different scales: lengths are those of its "
+                "first placement",
+            )
         )
     back = np.linalg.inv(matrices[0])
     return Placement(matrices[0], tuple(matrix @ back for matrix in places[1:]))

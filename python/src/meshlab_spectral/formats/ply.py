@@ -41,6 +41,7 @@ from meshlab_spectral.formats.normals import following_normals
 from meshlab_spectral.formats.polygons import strip_triangles, triangles
 from meshlab_spectral.formats.side_files import copy_side_files
 from meshlab_spectral.formats.text import BYTE_ORDER_MARK, Lines, lines_of, whole, write_patched
+from meshlab_spectral.warned import Warned
 
 AXES, NORMALS = ("x", "y", "z"), ("nx", "ny", "nz")
 _TEXTURE = re.compile(rb"(?m)^[ \t]*comment[ \t]+TextureFile[ \t]+(\S.*)")
@@ -77,7 +78,7 @@ class PlyDocument(Document):
     first: dict[tuple[str, ...], int]  # text: the words before coordinates, and before normals
     places: dict[str, Indices] | None = None  # of binary numbers whose rows differ in length
 
-    def save(self, target: Path, moved: Sequence[Array]) -> list[str]:  # noqa: D102
+    def save(self, target: Path, moved: Sequence[Array]) -> list[Warned]:  # noqa: D102
         before, (after,) = self.parts[0].vertices, moved
         types = {self.ply["vertex"].ply_property(name).val_dtype for name in AXES}
         loss = rounding_loss(before, after) if "f4" in types else None

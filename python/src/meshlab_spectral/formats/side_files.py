@@ -10,6 +10,7 @@ from pathlib import Path, PureWindowsPath
 
 from meshlab_spectral.errors import MeshFileError
 from meshlab_spectral.formats.names import shown
+from meshlab_spectral.warned import Warned
 
 
 def beside(source: Path, name: str) -> Path:
@@ -41,7 +42,7 @@ def is_outside(source: Path, name: str) -> bool:
     return not any(map(found.is_relative_to, folders))
 
 
-def copy_side_files(source: Path, target: Path, names: Iterable[str]) -> list[str]:
+def copy_side_files(source: Path, target: Path, names: Iterable[str]) -> list[Warned]:
     """Copy the files `names` that `source` refers to next to `target`, and never elsewhere.
 
     Returns a warning for each file that cannot be copied. Nothing is copied into the folder of
@@ -50,7 +51,7 @@ def copy_side_files(source: Path, target: Path, names: Iterable[str]) -> list[st
     if source.resolve().parent in target.resolve().parents[:2]:
         return []
     warnings = (_copy(source, target.parent, name) for name in dict.fromkeys(names))
-    return [warning for warning in warnings if warning]
+    return [Warned("side_file", warning) for warning in warnings if warning]
 
 
 def _copy(source: Path, target: Path, name: str) -> str | None:

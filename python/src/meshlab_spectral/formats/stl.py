@@ -15,6 +15,7 @@ from meshlab_spectral.formats.causes import EndsEarlyError, ForeignError, unread
 from meshlab_spectral.formats.digits import SINGLE, digits_for, precision_warnings
 from meshlab_spectral.formats.document import Array, Document, Indices, Part, check_vertices
 from meshlab_spectral.formats.text import BYTE_ORDER_MARK, lines_of, write_patched
+from meshlab_spectral.warned import Warned
 
 HEADER, _LOOKED_AT = 84, 1000  # bytes
 TRIANGLE = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])
@@ -29,7 +30,7 @@ class _BinaryStl(Document):
     content: bytes
     count: int
 
-    def save(self, target: Path, moved: Sequence[Array]) -> list[str]:
+    def save(self, target: Path, moved: Sequence[Array]) -> list[Warned]:
         (part,), (after,) = self.parts, moved
         content = bytearray(self.content)
         rows = np.frombuffer(content, TRIANGLE, self.count, HEADER)
@@ -54,7 +55,7 @@ class _TextStl(Document):
     corners: Indices
     normals: Array
 
-    def save(self, target: Path, moved: Sequence[Array]) -> list[str]:
+    def save(self, target: Path, moved: Sequence[Array]) -> list[Warned]:
         (part,), (after,) = self.parts, moved
         before, corners = part.vertices, part.faces.ravel()
         normals = following_facet_normals(before, after, part.faces, self.normals)
@@ -127,11 +128,12 @@ def _read_text(path: Path, content: bytes) -> Document:
     if len(chosen) % len(_FACET):
         raise EndsEarlyError("it ends within a facet")
     facets, corners = chosen[:: len(_FACET)], chosen[chosen.kinds == _KEYWORDS.index("vertex")]
+    text = f"{path.name} ends without endsolid: it may have been cut off"
     return _TextStl(
         path,
         [_connected(path, corners.numbers(path, 1))],
         ["names of solids"] if has_names else [],
-        [] if is_ended else [f"{path.name} ends without endsolid: it may have been cut off"],
+        [] if is_ended else [Warned("cut_file", text)],
         content=content,
         facets=facets.starts,
         corners=corners.starts,

@@ -28,6 +28,7 @@ from meshlab_spectral.formats.document import Array, Document, Indices, checked_
 from meshlab_spectral.formats.names import shown
 from meshlab_spectral.formats.placement import IDENTITY, Placement, placement_of
 from meshlab_spectral.formats.text import Change, whole, write_patched
+from meshlab_spectral.warned import Warned
 
 _DECRYPT = "save it without encryption"
 # What a package of the Open Packaging Conventions may have; zipfile unpacks others in one piece.
@@ -193,17 +194,15 @@ class _ThreeMfDocument(Document):
         """Add an object to the parts."""
         mesh.placement = placement_of(mesh.name, matrices, self.warnings)
         if len(matrices) == _MOST_PLACEMENTS:
-            self.warnings.append(
-                f"{mesh.name} is placed {_MOST_PLACEMENTS} times or more: other formats get only "
-                "as many of it"
-            )
+            text = f"is placed {_MOST_PLACEMENTS} times or more: other formats get only as many"
+            self.warnings.append(Warned("placement", f"{mesh.name} {text}"))
         placed = mesh.placement.placed(mesh.own)
         faces = mesh.placement.oriented(mesh.faces)
         part = checked_part(self.path, placed, faces, mesh.name)
         self.parts.append(replace(part, copies=mesh.placement.copies))
         self.meshes.append((model, mesh))
 
-    def save(self, target: Path, moved: Sequence[Array]) -> list[str]:
+    def save(self, target: Path, moved: Sequence[Array]) -> list[Warned]:
         changes: dict[str, list[tuple[_Object, Array]]] = defaultdict(list)
         for (model, mesh), part, vertices in zip(self.meshes, self.parts, moved, strict=True):
             if not np.array_equal(vertices, part.vertices):
@@ -222,7 +221,7 @@ class _ThreeMfDocument(Document):
                 info._compresslevel = _LEVEL  # type: ignore[attr-defined]
                 with copy.open(info, "w") as entry:
                     write_patched(entry, content, columns)
-        return ["its slices stay as they are"] * ("slices" in self.contents)
+        return [Warned("kept_in_file", "its slices stay as they are")] * ("slices" in self.contents)
 
 
 def _unpacked(archive: zipfile.ZipFile, info: zipfile.ZipInfo, budget: Budget) -> bytes:

@@ -28,6 +28,7 @@ from meshlab_spectral.formats.normals import following_normals
 from meshlab_spectral.formats.placement import Placement, placement_of
 from meshlab_spectral.formats.polygons import corners_of_triangles
 from meshlab_spectral.formats.side_files import copy_side_files
+from meshlab_spectral.warned import Warned
 
 _OF_USD = 256 << 20  # bytes of its own, such as its schemas
 _BINARY = b"PXR-USDC"
@@ -86,11 +87,11 @@ class _UsdDocument(Document):
         self.meshes.append(mesh)
         scheme = prim.GetSubdivisionSchemeAttr().Get()
         if scheme != "none":
-            warnings.append(
-                f"{name} is subdivided when it is shown ({scheme}): its cage is filtered"
-            )
+            text = f"{name} is subdivided when it is shown ({scheme}): its cage is filtered"
+            warnings.append(Warned("subdivided", text))
         if prim.GetPrim().HasAPI(UsdSkel.BindingAPI):
-            warnings.append(f"{name} has a skeleton: lengths are measured without its pose")
+            text = f"{name} has a skeleton: lengths are measured without its pose"
+            warnings.append(Warned("skeleton", text))
         primvars = UsdGeom.PrimvarsAPI(prim).GetPrimvarsWithValues()
         given = {one.GetPrimvarName() for one in primvars}
         given |= {"normals"} if _given(prim.GetNormalsAttr()) is not None else set()
@@ -99,9 +100,9 @@ class _UsdDocument(Document):
     def side_files(self) -> list[str]:
         return self.names
 
-    def save(self, target: Path, moved: Sequence[Array]) -> list[str]:
+    def save(self, target: Path, moved: Sequence[Array]) -> list[Warned]:
         pairs = zip(self.parts, moved, strict=True)
-        warnings: list[str] = []
+        warnings: list[Warned] = []
         if all(np.array_equal(part.vertices, new) for part, new in pairs):
             target.write_bytes(self.path.read_bytes())
             return copy_side_files(self.path, target, self.names)
@@ -240,7 +241,8 @@ def _document(path: Path) -> Document:
             continue
         name = shown(prim.GetPath())
         if prim.GetPointsAttr().ValueMightBeTimeVarying():
-            document.warnings.append(f"{name} moves its points in time: it stays as it is")
+            text = f"{name} moves its points in time: it stays as it is"
+            document.warnings.append(Warned("kept_in_file", text))
             continue
         mesh = meshes.setdefault((spec.layer.identifier, str(spec.path)), _Mesh())
         mesh.prims.append(prim)

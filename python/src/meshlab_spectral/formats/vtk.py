@@ -30,6 +30,7 @@ from meshlab_spectral.formats.names import shown
 from meshlab_spectral.formats.normals import following_normals
 from meshlab_spectral.formats.polygons import strip_triangles, triangles
 from meshlab_spectral.formats.text import Change, numbers_from, write_patched
+from meshlab_spectral.warned import Warned
 
 _TAG_BYTES = 800  # of what VTK makes of a tag
 _OF_VTK = 256 << 20  # bytes of its own, such as tables of threads
@@ -137,7 +138,7 @@ class _VtkDocument(Document):
     mesh: Any
     owners: Indices  # the cell of each triangle
 
-    def save(self, target: Path, moved: Sequence[Array]) -> list[str]:
+    def save(self, target: Path, moved: Sequence[Array]) -> list[Warned]:
         before, faces, after = self.parts[0].vertices, self.parts[0].faces, moved[0]
         if np.array_equal(before, after):
             target.write_bytes(self.path.read_bytes())

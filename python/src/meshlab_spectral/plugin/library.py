@@ -11,9 +11,10 @@ from typing import Any
 from meshlab_spectral.errors import PluginError
 from meshlab_spectral.plugin.handle import opened
 from meshlab_spectral.plugin.loading import loaded_plugin
+from meshlab_spectral.warned import Warned
 
 
-def last_warnings() -> list[str]:
+def last_warnings() -> list[Warned]:
     """Return the warnings of the plugin's latest filter run in this thread, in its own words.
 
     They are sentences without the final full stop; none before the first run or after a failed one.
@@ -24,7 +25,7 @@ def last_warnings() -> list[str]:
     """
     function = function_of(loaded_plugin(), "meshlab_spectral_warnings", ())
     text: bytes = function()
-    return text.decode().splitlines()
+    return [Warned(*line.split(" ", 1)) for line in text.decode().splitlines()]
 
 
 def last_summary() -> str:

@@ -16,6 +16,7 @@ from meshlab_spectral.plugin.failed_calls import is_interrupt, keep_failed
 from meshlab_spectral.plugin.library import function_of, last_error, last_summary, last_warnings
 from meshlab_spectral.plugin.loading import load, loaded_plugin
 from meshlab_spectral.plugin.pymeshlab_texts import corrected
+from meshlab_spectral.warned import with_warnings
 
 Array = NDArray[np.float64]
 
@@ -124,7 +125,7 @@ def call_filter(mesh_set: Any, name: str, parameters: dict[str, Any]) -> dict[st
     except (pymeshlab.InvalidEnumException, RuntimeError, TypeError) as error:
         keep_failed(mesh_set)
         raise FilterError(reason_of(corrected(mesh_set, name, parameters, error))) from error
-    report["warnings"] = last_warnings()
+    report = with_warnings(report, last_warnings())
     if summary := last_summary():
         report["summary"] = summary
     return report

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import math
-import re
 from collections import Counter
 from statistics import median
 from typing import Any
+
+from meshlab_spectral.warned import Warned, warned, with_warnings
 
 _LARGEST = (
     "step_error",
@@ -21,7 +22,6 @@ _LARGEST = (
 _ALIKE = ("feature_size", "cutoff_frequency")
 # Of denoising.
 _NOISE = ("noise_height", "noise_size", "mean_edge")
-_NUMBER = re.compile(r"\d[\d.e+-]*")
 
 
 def _mean(name: str, reports: list[dict[str, Any]]) -> float:
@@ -74,14 +74,13 @@ def combined(
         "max_displacement": max(one["largest"] for one in reports),
         "rms_displacement": math.sqrt(total("squares") / area) if area else 0.0,
         "limited_share": _mean("limited_share", reports),
-        "warnings": _warnings(ran),
     }
     precision = (
         math.sqrt(total("rounding_squares") / moved),
         math.sqrt(total("moved_squares") / moved),
         max(one["largest_coordinate"] for one in reports),
     )
-    return report, precision
+    return with_warnings(report, _warnings(ran)), precision
 
 
 def singular_part(reports: list[dict[str, Any]]) -> float:
@@ -91,15 +90,15 @@ def singular_part(reports: list[dict[str, Any]]) -> float:
     return parts / area if area else 0.0
 
 
-def _warnings(reports: list[dict[str, Any]]) -> list[str]:
-    """Return each warning once, although its numbers differ from tile to tile."""
-    kinds: dict[str, list[str]] = {}
+def _warnings(reports: list[dict[str, Any]]) -> list[Warned]:
+    """Return each kind of warning once, although its numbers differ from tile to tile."""
+    kinds: dict[str, list[Warned]] = {}
     for one in reports:
-        for warning in one["warnings"]:
-            kinds.setdefault(_NUMBER.sub("#", warning), []).append(warning)
+        for warning in warned(one):
+            kinds.setdefault(warning.code, []).append(warning)
     return [
-        warnings[0]
-        if len(set(warnings)) == 1 and len(warnings) == len(reports)
-        else f"{warnings[0]} (in {len(warnings)} of {len(reports)} tiles)"
-        for warnings in kinds.values()
+        first
+        if len({first, *others}) == 1 and 1 + len(others) == len(reports)
+        else Warned(first.code, f"{first} (in {1 + len(others)} of {len(reports)} tiles)")
+        for first, *others in kinds.values()
     ]

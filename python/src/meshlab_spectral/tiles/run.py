@@ -34,6 +34,7 @@ from meshlab_spectral.tiles.rows import MeshRows, open_rows
 from meshlab_spectral.tiles.scatter import scatter
 from meshlab_spectral.tiles.survey import Survey, survey
 from meshlab_spectral.tiles.tile_jobs import TileJob, check_seen, run_tile
+from meshlab_spectral.warned import Warned, warned, with_warnings
 from meshlab_spectral.workers.local import local_workers
 from meshlab_spectral.workers.memory import PROCESS_BYTES, TILE_BYTES, limit_for, workers
 from meshlab_spectral.workers.pool import Workers, run_jobs
@@ -332,9 +333,9 @@ def _summary(
 ) -> tuple[dict[str, Any], bool]:
     """Return the report of the whole, and whether coordinates need double precision."""
     report, (rounding, displacement, largest) = combined(plan.filter, reports)
+    report = {"tiles": plan.tiles, **report}
     told = rounding_message(rounding, displacement, largest) if rows.is_single else None
     if told and rows.is_joined_by_position:
-        report["warnings"].append(f"{told}: choose .ply, or move the mesh to the origin first")
-        told = None
-    report["warnings"] += widening_warnings(told)
-    return {"tiles": plan.tiles, **report}, bool(told)
+        remedy = f"{told}: choose .ply, or move the mesh to the origin first"
+        return with_warnings(report, [*warned(report), Warned("rounded", remedy)]), False
+    return with_warnings(report, warned(report) + widening_warnings(told)), bool(told)
