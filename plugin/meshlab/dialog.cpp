@@ -59,7 +59,7 @@ QString lengthLabel(const Parameter& parameter, const spectral::MeshLengths& mes
 
 QString tooltipOf(const Parameter& parameter, const spectral::MeshLengths& mesh) {
     // MeshLab's fields take no unit: 0.2e is for scripts.
-    static const QRegularExpression inEdges("\\b([0-9.]+)e\\b");
+    static const QRegularExpression inEdges("\\b([0-9][0-9.]*)e\\b");
     QString html = asHtml(parameter.help).replace(inEdges, "\\1 mean edges");
     if (parameter.kind != Kind::Length) return html;
     html += QString(" Default: %1.").arg(QString::fromStdString(parameter.automaticText));

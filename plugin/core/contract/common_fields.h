@@ -38,9 +38,9 @@ Field<Call> boundaryField(At at, const std::string& help) {
 template <class Call, class At>
 Field<Call> maxDisplacementField(At at) {
     return field<Call>(at, "max_displacement", "Largest displacement",
-                       "No vertex moves farther. Where the filter would move one farther, all "
-                       "around it move less, so that no ridge is left; the report says on how "
-                       "much of the surface. The default: no bound.")
+                       "No vertex moves farther than this. Around vertices that would, the "
+                       "surface moves less, too, so that no ridge is left; the report says on "
+                       "how much of it. The default: no bound.")
         .in("length, at least 0")
         .length("auto", nullptr, "0: no bound")
         .advanced();

@@ -30,22 +30,22 @@ Fields<DenoiseCall> denoiseFields() {
     return {
         field<Call>([](auto& call) -> auto& { return call.options.strength; }, "strength",
                     "Strength",
-                    "1 removes the noise as measured. More removes finer details, too; less leaves "
+                    "1 removes the noise as measured. More also removes fine details; less leaves "
                     "some noise; 0 changes nothing.")
             .in("factor, at least 0"),
         field<Call>([](auto& call) -> auto& { return call.options.noiseHeight; }, "noise_height",
                     "Noise height",
                     "Standard deviation of the noise along the normals, such as 0.2e. Set it if "
                     "details were mistaken for noise, or noise for details. The default: as "
-                    "measured; the report then says how high it is.")
+                    "measured, which the report states.")
             .in("length, at least 0")
             .length("auto", nullptr, "0: as measured")
             .upToShare(0.2),
         field<Call>(
             [](auto& call) -> auto& { return call.options.noiseSize; }, "noise_size", "Noise size",
             "Distance over which the noise is correlated: half the width of its bumps, such "
-            "as 2e. Up to a mean edge, it is independent at each vertex. The default: as "
-            "measured.")
+            "as 2e. Noise of up to one mean edge is independent at each vertex. The default: "
+            "as measured.")
             .in("length, at least 0")
             .length("auto", nullptr, "0: as measured"),
         selectedField<Call>([](auto& call) -> auto& { return call.selected; }, "four edges"),
@@ -59,15 +59,15 @@ Fields<DenoiseCall> denoiseFields() {
         weightField<Call>(
             [](auto& call) -> auto& { return call.weight; },
             "factor on the |noise_height| at each vertex, from 0 (no noise) to 1, for "
-            "noise that differs from place to place. *none*: as measured, or the "
+            "noise that varies over the surface. *none*: as measured, or the "
             "same everywhere."),
         boundaryField<Call>([](auto& call) -> auto& { return call.options.boundary; },
                             "*free*: it moves along its normals, no further than the noise "
                             "explains. *fixed*: it stays exactly in place."),
         field<Call>([](auto& call) -> auto& { return call.storeNoiseHeight; }, "store_noise_height",
                     "Store noise height",
-                    "Keep the height of the noise at each vertex, 0 where there is none, as the "
-                    "vertex attribute noise_height: where it was found.")
+                    "Store the height of the noise found at each vertex, 0 where there is none, "
+                    "as the vertex attribute noise_height.")
             .advanced(),
     };
 }
@@ -90,9 +90,8 @@ Entries<DenoiseResult> denoiseEntries() {
         {{
              {"noise_kind",
               "white, correlated (of a scanner), impulses, scan_lines, rounded (coordinates), "
-              "local "
-              "(in places) or voxels; without noise: none, shape (which it may be), tessellation "
-              "(of CAD), stretched (axis), or too_few (vertices)",
+              "local (in some regions) or voxels; without noise: none, shape (it may be noise), "
+              "tessellation (of CAD), stretched (axis), or too_few (vertices)",
               [](const R& r) -> Value { return kindText(r.diagnosis.kind); }},
              {"noise_share", "share of the surface with noise, 0 to 1",
               [](const R& r) -> Value { return noiseShare(r.diagnosis); }},
@@ -105,12 +104,12 @@ Entries<DenoiseResult> denoiseEntries() {
               "measured standard deviation of the noise along the normals, length",
               [](const R& r) -> Value { return r.diagnosis.noise.height; }},
              {"estimated_noise_size",
-              "measured length over which neighbouring vertices have like noise, length",
+              "measured distance over which the noise is correlated, length",
               [](const R& r) -> Value {
                   return r.diagnosis.noise.size * r.diagnosis.noise.meanEdge;
               }},
              {"noise_correlation",
-              "of the noise of neighbouring vertices, as measured; above 0.2 it is shape",
+              "measured correlation between neighbouring vertices; above 0.2 it is shape",
               [](const R& r) -> Value { return r.diagnosis.noise.correlation; }},
              {"noise_searched",
               "whether the mesh was searched for noise: not if it has needle triangles, voxels or "
@@ -236,9 +235,9 @@ FilterOutput run(const FilterInput& input, const MeshLengths& mesh, const Values
 Filter denoiseContract() {
     return {"Spectral Denoise",
             "apply_coord_spectral_denoise",
-            "Detects which noise a mesh has (scanner noise, spikes or voxel steps) and smooths it "
-            "away, with *no parameters to set*. Creases become sharp; a mesh without noise is left "
-            "bit-for-bit unchanged. The log says what was found.",
+            "Finds the noise of a mesh (scanner noise, spikes or voxel steps) and smooths it away, "
+            "*without parameters*. Creases become sharp; a mesh without noise is left bit-for-bit "
+            "unchanged. The log says what was found.",
             "",
             parametersOf(denoiseFields()),
             describedBy(denoiseEntries()),

@@ -51,13 +51,14 @@ Fields<EqualizerCall> equalizerFields() {
     Fields<Call> fields;
     for (std::size_t i = 0; i < kEqualizerTimes.size(); ++i) {
         const std::string times = std::to_string(kEqualizerTimes[i]);
-        const char* const finer = kEqualizerTimes[i] == 1 ? " and of all finer ones" : "";
+        const bool isSmallest = kEqualizerTimes[i] == 1;
         fields.push_back(
             field<Call>(
                 [i](auto& call) -> auto& { return call.gains[i]; }, gainName(i).c_str(),
                 ("Details of " + times + " x the smallest size").c_str(),
-                ("Factor for the height of details of " + times + " times the smallest size" +
-                 finer + ": 1 keeps them, 2 doubles them, 0.5 halves them, 0 removes them.")
+                ("Factor for the height of details of " + (isSmallest ? "" : times + " times ") +
+                 "the smallest size" + (isSmallest ? " and of all finer ones" : "") +
+                 ": 1 keeps them, 2 doubles them, 0.5 halves them, 0 removes them.")
                     .c_str())
                 .in("factor, 0 to 4")
                 .to(kMaxEqualizerGain));

@@ -49,8 +49,8 @@ Fields<FractionalCall> fractionalFields() {
     fields.push_back(
         field<Call>([](auto& call) -> auto& { return call.options.tolerance; }, "tolerance",
                     "Tolerance",
-                    "With |steps| 0: largest distance of the surface from the result of infinitely "
-                    "many steps, for all but a thousandth of it. Larger is faster.")
+                    "With |steps| 0: largest distance between the result and that of infinitely "
+                    "many steps, on all but a thousandth of the surface. Larger is faster.")
             .in("length, above 0")
             .above(0.0)
             .length("0.05%", defaultTolerance, "0.05 % of the diagonal")
@@ -59,8 +59,8 @@ Fields<FractionalCall> fractionalFields() {
         field<Call>([](auto& call) -> auto& { return call.options.passes; }, "passes",
                     "Passes (0 = automatic)",
                     "With |steps| 0: the number of passes of 1, 2, 4, ... steps, whatever the "
-                    "|tolerance|. A report says how many a run took: setting that number repeats "
-                    "it exactly.")
+                    "|tolerance|. The report says how many a run took: that number repeats the "
+                    "run exactly.")
             .in("number of passes, 0 to 9")
             .to(kMaxPasses)
             .advanced()
@@ -144,7 +144,7 @@ Fields<FractionalCall> fractionalFields() {
     fields.push_back(
         weightField<Call>([](auto& call) -> auto& { return call.weight; },
                           "how much of the filter each vertex gets, from 0 (nothing) to "
-                          "1 (all), to paint where to filter. *none*: all of it."));
+                          "1 (all), so that you can paint where to filter. *none*: all of it."));
     fields.push_back(
         field<Call>(
             [](auto& call) -> auto& { return call.result; }, "result", "Result",

@@ -27,7 +27,7 @@ const Entries<FilterResult>& fractionalEntries() {
              {"steps", "number of steps; with automatic steps, of the last pass",
               [](const R& r) -> Value { return r.steps; }},
              {"passes",
-              "passes of automatic steps, whose number repeats the run exactly; 0: not automatic",
+              "passes of automatic steps: this number repeats the run exactly; 0: not automatic",
               [](const R& r) -> Value { return r.passes; }},
              {"cutoff_frequency", "2 π / feature size, radians per length",
               [](const R& r) -> Value { return r.cutoffFrequency; }},
@@ -51,7 +51,7 @@ const Entries<FilterResult>& fractionalEntries() {
              {"error_estimate",
               "estimated error of the evaluation, relative to the size of what is filtered",
               [](const R& r) -> Value { return r.errorEstimate; }},
-             {"accuracy_reached", "whether the evaluation was as accurate as it should be",
+             {"accuracy_reached", "whether the evaluation reached its accuracy",
               [](const R& r) -> Value { return r.accuracyReached; }},
              {"step_error",
               "with automatic steps, estimated error over all but a thousandth of the input "
@@ -65,13 +65,12 @@ const Entries<FilterResult>& fractionalEntries() {
               [](const R& r) -> Value { return r.singularPart; }},
              {"thin_part_factor",
               "at the default size, by how much the thinnest part exceeds it, squared; above 2, "
-              "thin "
-              "parts are kept",
+              "thin parts are kept",
               [](const R& r) -> Value { return r.thinPartFactor; }},
              {"shrunken_part", "share of the surface, 0 to 1, that shrinks to lines or points",
               [](const R& r) -> Value { return r.shrunkenPart; }},
              {"mean_edge", "mean edge, length", [](const R& r) -> Value { return r.meanEdge; }},
-             {"step_sizes", "fractional powers of the steps, in their order; their sum is 1",
+             {"step_sizes", "fractional powers of the steps, in order; their sum is 1",
               [](const R& r) -> Value {
                   return Eigen::VectorXd(Eigen::Map<const Eigen::VectorXd>(
                       r.stepSizes.data(), static_cast<Index>(r.stepSizes.size())));

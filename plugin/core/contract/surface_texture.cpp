@@ -35,20 +35,20 @@ Fields<TextureCall> textureFields() {
             [](auto& call) -> auto& { return call.options.waviness; }, "waviness",
             "Waviness cutoff",
             "Nesting index of the L-filter of ISO 25178-3: what is larger is waviness or "
-            "form, and no roughness. Waves of this length keep half of their height, as in ISO "
-            "16610-61. The whole diagonal, with a plane, sphere or cylinder as |form|: no "
+            "form, not roughness. Waves of this length keep half of their height, as in ISO "
+            "16610-61. With a plane, sphere or cylinder as |form|, the whole diagonal means no "
             "L-filter.")
             .in("length, above 0")
             .above(0.0)
             .length("auto", wavinessOf, "twelve mean edges, at most 10 % of the diagonal"),
         field<Call>([](auto& call) -> auto& { return call.options.noise; }, "noise", "Noise cutoff",
-                    "Nesting index of the S-filter: what is smaller is noise, and no roughness. "
-                    "The default: none is removed.")
+                    "Nesting index of the S-filter: what is smaller is noise, not roughness. "
+                    "The default: nothing is removed.")
             .in("length, at least 0")
             .length("auto", nullptr, "0: no S-filter"),
         field<Call>([](auto& call) -> auto& { return call.options.form; }, "form", "Form",
-                    "What of the shape is form (F-operator), and no roughness. *size*: heights "
-                    "that vary more slowly than |form_size|; fits any shape. *plane*, *sphere*, "
+                    "What counts as form (F-operator), not as roughness. *size*: heights that "
+                    "vary more slowly than |form_size|; suits any shape. *plane*, *sphere*, "
                     "*cylinder*: the one nearest to the measured surface, by least squares; "
                     "better for a sphere or a cylinder with a radius of less than two waviness "
                     "cutoffs. *none*: nothing, so that curvature adds to the heights.")
@@ -65,11 +65,11 @@ Fields<TextureCall> textureFields() {
             }),
         field<Call>([](auto& call) -> auto& { return call.options.creaseAngle; }, "crease_angle",
                     "Crease angle (degrees)",
-                    "Edges between faces whose planes differ by more are creases, where the form "
-                    "turns as far, too. The surface within a waviness cutoff of them, and of "
-                    "boundaries, is left out: it has the height 0. Holes of up to half a cutoff "
-                    "are points missing, and leave nothing out. 180 keeps creases; a plane, sphere "
-                    "or cylinder has none.")
+                    "Edges between faces whose planes differ by more than this are creases, if the "
+                    "form turns as much. The surface within a waviness cutoff of them, and of "
+                    "boundaries, is left out: it gets the height 0. Holes of up to a quarter of a "
+                    "cutoff count as missing points: nothing is left out around them. With 180 no "
+                    "edge is a crease; a plane, sphere or cylinder has none.")
             .in("degrees, 0 to 180")
             .to(180.0)
             .advanced(),
@@ -255,9 +255,9 @@ Filter surfaceTextureContract() {
         "compute_scalar_surface_texture_per_vertex",
         "Measures how *rough* a surface is, on any shape: separates roughness from waviness and "
         "form with the Gaussian filter of ISO 16610-61, a spectral low-pass, and reports the "
-        "parameters of ISO 25178-2: Sa, Sq, Ssk, Sku, Sp, Sv, Sz, Sdq, Sdr, Sk, Spk, Svk, of "
-        "height maps Sal, Str. The height of each "
-        "vertex above the smooth surface, in the units of the mesh, becomes the vertex quality; "
+        "parameters of ISO 25178-2: Sa, Sq, Ssk, Sku, Sp, Sv, Sz, Sdq, Sdr, Sk, Spk, Svk, and of "
+        "height maps Sal and Str. The height of each vertex above the smooth surface, in the units "
+        "of the mesh, becomes the vertex quality; "
         "no vertex moves.",
         "",
         parametersOf(textureFields()),

@@ -61,11 +61,12 @@ void addTransferFields(Fields<Call>& fields) {
             .of({"low-pass", "high-pass", "band-pass", "band-stop", "custom"}));
     fields.push_back(featureSizeField<Call>(
         [](auto& call) -> auto& { return call.featureSize; },
-        "Size at which the filter cuts off: a wavelength along the surface, i.e. a bump and the "
+        "Size at which the filter cuts off: a wavelength along the surface, that is, a bump and "
+        "the "
         "hollow next to it. A low-pass leaves a quarter of the height of waves half as long, and "
         "nine tenths of that of waves twice as long. To remove bumps, try four times their width. "
-        "At the default size a low-pass removes the noise of a scan, and thinner parts keep their "
-        "thickness; at any other size they shrink."));
+        "At the default size a low-pass removes the noise of a scan, and thinner parts, such as "
+        "fingers and wires, keep their thickness; at any other size they shrink."));
     fields.push_back(field<Call>([](auto& call) -> auto& { return call.transfer.power; }, "power",
                                  "Strength (up to 1)",
                                  "Fraction of the filter to apply, as a power of its gains: 0.5 is "

@@ -2,7 +2,7 @@
 Denoise a scan
 ==============
 
-Remove the noise of a scanner and keep the shape, with no parameters to set.
+Remove the noise of a scanner and keep the shape, without parameters.
 
 A clean mesh with added noise serves as the scan, so that the result can be compared with the
 truth: the noise is a fifth of a mean edge length.

@@ -116,6 +116,7 @@ def test_a_filter_and_all_its_parameters_have_help(name: str) -> None:
         assert parameter.label, parameter.name
         assert len(parameter.help.split()) >= 5, f"{parameter.name}: {parameter.help!r}"
         assert parameter.help.endswith("."), f"{parameter.name}: {parameter.help!r}"
+        assert ". mean edges" not in parameter.help  # 2e, but not i.e.
 
 
 @each_filter

@@ -32,7 +32,7 @@ class Settings:
     )
     recursive: bool = option(
         False,
-        "Search subfolders of the inputs, too, and keep their structure.",
+        "Also search subfolders of the inputs, and keep their structure.",
         flags=("--recursive", "-r"),
     )
     joined: bool = option(
@@ -48,8 +48,8 @@ class Settings:
     )
     resume: bool = option(
         False,
-        "Continue an earlier run, if there was one: skip what the report proves done with the same "
-        "input, options and versions; replace outputs changed since.",
+        "Continue an earlier run: skip what the report proves done with the same input, options "
+        "and versions; replace outputs changed since.",
         flags=("--resume",),
     )
     script: Path | None = option(

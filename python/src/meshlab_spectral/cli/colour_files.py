@@ -15,7 +15,7 @@ from meshlab_spectral.files.extensions import check_ending
 from meshlab_spectral.files.whole_files import check_target, writing_whole
 
 _PICTURE = typer.Option(
-    metavar="FILE", help="Draw the mesh before, after, and in colours, a .png file."
+    metavar="FILE", help="Draw a .png picture: the meshes, and the result in colours."
 )
 Picture = Annotated[Path | None, _PICTURE]
 Overwrite = Annotated[

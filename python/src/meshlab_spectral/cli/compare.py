@@ -45,13 +45,13 @@ def compare_command(
     max_distance: Annotated[
         float | None,
         typer.Option(
-            metavar="LENGTH", min=0, help="Leave out what is farther from the other mesh than that."
+            metavar="LENGTH", min=0, help="Leave out what is farther than this from the other mesh."
         ),
     ] = None,
     overwrite: Overwrite = False,
     as_json: AsJson = False,
 ) -> None:
-    """Compare two meshes: how far B is from A, where, and on which side.
+    """Compare two meshes: how far B is from A, and where.
 
     If both have the same faces, as before and after a filter, each vertex is compared with itself.
     Otherwise each vertex is compared with the nearest point of the other mesh, and what lies beyond

@@ -107,7 +107,7 @@ def _command_with(table: type[Options], help_text: str) -> Command:
         ] = None,
         output: Annotated[
             Path | None,
-            typer.Option("--output", "-o", metavar="FILE", help="Another way to name OUTPUT."),
+            typer.Option("--output", "-o", metavar="FILE", help="The same as OUTPUT."),
         ] = None,
         mesh: Annotated[
             str | None,
@@ -120,7 +120,7 @@ def _command_with(table: type[Options], help_text: str) -> Command:
         overwrite: Overwrite = False,
         ending: Annotated[
             str | None,
-            typer.Option("--format", metavar="ENDING", help="The format of -, such as ply."),
+            typer.Option("--format", metavar="ENDING", help="Format of standard output: ply, ..."),
         ] = None,
         tiles: Annotated[
             int | None,
@@ -137,7 +137,7 @@ def _command_with(table: type[Options], help_text: str) -> Command:
             typer.Option(
                 parser=memory_size,
                 metavar="SIZE",
-                help="Memory limit, such as 4GB; by default what the machine has free.",
+                help="Memory limit, such as 4GB; by default the free memory.",
             ),
         ] = None,
         scheduler: Annotated[
@@ -166,8 +166,8 @@ def _command_with(table: type[Options], help_text: str) -> Command:
             Path | None,
             typer.Option(
                 metavar="FILE",
-                help="Also write OUTPUT as .ply with how far each vertex has moved along its "
-                "normal, as quality and in colours: red outwards, blue inwards.",
+                help="Also write OUTPUT as .ply, with the displacement of each vertex along its "
+                "normal as quality and in colours: red outwards, blue inwards.",
             ),
         ] = None,
         as_json: AsJson = False,

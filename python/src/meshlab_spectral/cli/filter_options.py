@@ -42,7 +42,7 @@ Recipe = Annotated[
     typer.Option(
         "--recipe",
         metavar="FILE",
-        help="Read options from a recipe, a TOML file; options given as well take precedence.",
+        help="Read options from a recipe, a TOML file; others on the command line override it.",
     ),
 ]
 SaveRecipe = Annotated[
@@ -50,12 +50,12 @@ SaveRecipe = Annotated[
     typer.Option(
         "--save-recipe",
         metavar="FILE",
-        help="Write all options but those of a region to a recipe, for the next scan or a batch.",
+        help="Save all options but those of a region as a recipe, for the next scan or a batch.",
     ),
 ]
 SavePreset = Annotated[
     str | None,
-    typer.Option(metavar="NAME", help="The same as a preset of yours, for --preset NAME."),
+    typer.Option(metavar="NAME", help="Save them as your own preset, for --preset NAME."),
 ]
 
 
@@ -80,8 +80,8 @@ def _preset_option(tables: Collection[type[Any]]) -> typer.models.OptionInfo:
         autocompletion=lambda incomplete: [
             name for name in preset_names(*tables) if name.startswith(incomplete)
         ],
-        help="Start from the options for a purpose, or from a preset of yours; options given as "
-        f"well take precedence. {known}.",
+        help="Start from the options for a purpose, or from your own preset; others on the command "
+        f"line override it. {known}.",
     )
     return option
 

@@ -49,7 +49,7 @@ def texture_command(
     given: dict[str, Any],
     region: Region,
     sources: Annotated[
-        list[Path], typer.Argument(metavar="MESH...", help="Meshes to read: .ply, .obj, .stl, ...")
+        list[Path], typer.Argument(metavar="MESH", help="Meshes to read: .ply, .obj, .stl, ...")
     ],
     output: Annotated[
         Path | None,
@@ -62,21 +62,21 @@ def texture_command(
     mesh: OneMesh = None,
     unit: Annotated[
         str,
-        typer.Option(metavar="UNIT", help="What a length is, such as mm; else as the file says."),
+        typer.Option(metavar="UNIT", help="Unit of length, such as mm; default: the file's."),
     ] = "",
     smr: Annotated[
         list[float] | None,
         typer.Option(
-            metavar="C", help="Also Smr(C): the share of the area at least this high; repeatable."
+            metavar="C", help="Report Smr(C), too: the share of the area at least C high."
         ),
     ] = None,
     table: Annotated[
         Path | None,
-        typer.Option("--csv", metavar="FILE", help="Write all numbers, a row for each mesh."),
+        typer.Option("--csv", metavar="FILE", help="Write all numbers as CSV, one row per mesh."),
     ] = None,
     as_json: AsJson = False,
 ) -> None:
-    """Measure how rough a surface is: Sa, Sq, Sz and others of ISO 25178-2.
+    """Measure roughness: Sa, Sq, Sz and others of ISO 25178-2.
 
     Roughness is separated from waviness, form and noise by cutoff wavelengths (nesting indices),
     with the Gaussian filter of ISO 16610-61 on a fitted plane, sphere or cylinder, or on the smooth

@@ -16,25 +16,25 @@ class Region:
 
     box: str | None = option(
         None,
-        "Filter only inside a box, X,Y,Z,X,Y,Z: two opposite corners, in the units of the file; "
+        "Only inside a box, X,Y,Z,X,Y,Z: two opposite corners, in the units of the file; "
         "inf and -inf are no limit.",
         metavar="BOX",
     )
     component: str | None = option(
         None,
-        "Filter only the largest connected component, or the one of this number: 1 is the largest "
+        "Only the largest connected component, or the one of this number: 1 is the largest "
         "by area, 2 the next, over all meshes of the file.",
         metavar="largest|N",
     )
     where: str | None = option(
         None,
-        "Filter only where a condition holds, such as 'z > 3 && nz > 0', of the position x, y, z, "
+        "Only where a condition holds, such as 'z > 3 && nz > 0', of the position x, y, z, "
         "the vertex normal nx, ny, nz and the quality q.",
         metavar="CONDITION",
     )
     mask: Path | None = option(
         None,
-        "Filter only the vertices that are not 0 in a file with one number for each, text or .npy.",
+        "Only the vertices that are not 0 in a file with one number for each, text or .npy.",
         metavar="FILE",
     )
 

@@ -134,12 +134,12 @@ class FilterOptions(Options):
     )
     feature_size: Length = option(
         Length(automatic=True),
-        "Size at which the filter cuts off: a wavelength along the surface, i.e. a bump and "
-        "the hollow next to it. A low-pass leaves a quarter of the height of waves half as "
-        "long, and nine tenths of that of waves twice as long. To remove bumps, try four "
+        "Size at which the filter cuts off: a wavelength along the surface, that is, a bump "
+        "and the hollow next to it. A low-pass leaves a quarter of the height of waves half "
+        "as long, and nine tenths of that of waves twice as long. To remove bumps, try four "
         "times their width. At the default size a low-pass removes the noise of a scan, and "
-        "thinner parts keep their thickness; at any other size they shrink. Default: six "
-        "mean edges, at most 5 % of the diagonal.",
+        "thinner parts, such as fingers and wires, keep their thickness; at any other size "
+        "they shrink. Default: six mean edges, at most 5 % of the diagonal.",
     )
     power: float = option(
         1.0,
@@ -198,14 +198,14 @@ class FilterOptions(Options):
     )
     tolerance: Length = option(
         Length(0.05, "%"),
-        "With --steps 0: largest distance of the surface from the result of infinitely many "
-        "steps, for all but a thousandth of it. Larger is faster. Default: 0.05 % of the "
-        "diagonal.",
+        "With --steps 0: largest distance between the result and that of infinitely many "
+        "steps, on all but a thousandth of the surface. Larger is faster. Default: 0.05 % "
+        "of the diagonal.",
     )
     passes: int = option(
         0,
         "With --steps 0: the number of passes of 1, 2, 4, ... steps, whatever the "
-        "--tolerance. A report says how many a run took: setting that number repeats it "
+        "--tolerance. The report says how many a run took: that number repeats the run "
         "exactly.",
         Limits(0, 9),
     )
@@ -267,14 +267,14 @@ class FilterOptions(Options):
     )
     max_displacement: Length = option(
         Length(automatic=True),
-        "No vertex moves farther. Where the filter would move one farther, all around it "
-        "move less, so that no ridge is left; the report says on how much of the surface. "
-        "The default: no bound.",
+        "No vertex moves farther than this. Around vertices that would, the surface moves "
+        "less, too, so that no ridge is left; the report says on how much of it. The "
+        "default: no bound.",
     )
     weight: Weight = option(
         "none",
         "vertex quality: how much of the filter each vertex gets, from 0 (nothing) to 1 "
-        "(all), to paint where to filter. none: all of it.",
+        "(all), so that you can paint where to filter. none: all of it.",
     )
     result: Result = option(
         "filtered shape",
@@ -304,20 +304,21 @@ class DenoiseOptions(Options):
 
     strength: float = option(
         1.0,
-        "1 removes the noise as measured. More removes finer details, too; less leaves some "
+        "1 removes the noise as measured. More also removes fine details; less leaves some "
         "noise; 0 changes nothing.",
         Limits(0),
     )
     noise_height: Length = option(
         Length(automatic=True),
         "Standard deviation of the noise along the normals, such as 0.2e. Set it if details "
-        "were mistaken for noise, or noise for details. The default: as measured; the "
-        "report then says how high it is.",
+        "were mistaken for noise, or noise for details. The default: as measured, which the "
+        "report states.",
     )
     noise_size: Length = option(
         Length(automatic=True),
         "Distance over which the noise is correlated: half the width of its bumps, such as "
-        "2e. Up to a mean edge, it is independent at each vertex. The default: as measured.",
+        "2e. Noise of up to one mean edge is independent at each vertex. The default: as "
+        "measured.",
     )
     selected: bool = option(
         False,
@@ -329,14 +330,14 @@ class DenoiseOptions(Options):
     )
     max_displacement: Length = option(
         Length(automatic=True),
-        "No vertex moves farther. Where the filter would move one farther, all around it "
-        "move less, so that no ridge is left; the report says on how much of the surface. "
-        "The default: no bound.",
+        "No vertex moves farther than this. Around vertices that would, the surface moves "
+        "less, too, so that no ridge is left; the report says on how much of it. The "
+        "default: no bound.",
     )
     weight: Weight = option(
         "none",
         "vertex quality: factor on the --noise-height at each vertex, from 0 (no noise) to "
-        "1, for noise that differs from place to place. none: as measured, or the same "
+        "1, for noise that varies over the surface. none: as measured, or the same "
         "everywhere.",
     )
     boundary: Boundary = option(
@@ -346,8 +347,8 @@ class DenoiseOptions(Options):
     )
     store_noise_height: bool = option(
         False,
-        "Keep the height of the noise at each vertex, 0 where there is none, as the vertex "
-        "attribute noise_height: where it was found.",
+        "Store the height of the noise found at each vertex, 0 where there is none, as the "
+        "vertex attribute noise_height.",
     )
 
 
@@ -411,24 +412,24 @@ class TextureOptions(Options):
     waviness: Length = option(
         Length(automatic=True),
         "Nesting index of the L-filter of ISO 25178-3: what is larger is waviness or form, "
-        "and no roughness. Waves of this length keep half of their height, as in ISO "
-        "16610-61. The whole diagonal, with a plane, sphere or cylinder as --form: no "
-        "L-filter. Default: twelve mean edges, at most 10 % of the diagonal.",
+        "not roughness. Waves of this length keep half of their height, as in ISO 16610-61. "
+        "With a plane, sphere or cylinder as --form, the whole diagonal means no L-filter. "
+        "Default: twelve mean edges, at most 10 % of the diagonal.",
         flags=("--waviness", "--nesting-index-l"),
     )
     noise: Length = option(
         Length(automatic=True),
-        "Nesting index of the S-filter: what is smaller is noise, and no roughness. The "
-        "default: none is removed.",
+        "Nesting index of the S-filter: what is smaller is noise, not roughness. The "
+        "default: nothing is removed.",
         flags=("--noise", "--nesting-index-s"),
     )
     form: Form = option(
         "size",
-        "What of the shape is form (F-operator), and no roughness. size: heights that vary "
-        "more slowly than --form-size; fits any shape. plane, sphere, cylinder: the one "
-        "nearest to the measured surface, by least squares; better for a sphere or a "
-        "cylinder with a radius of less than two waviness cutoffs. none: nothing, so that "
-        "curvature adds to the heights.",
+        "What counts as form (F-operator), not as roughness. size: heights that vary more "
+        "slowly than --form-size; suits any shape. plane, sphere, cylinder: the one nearest "
+        "to the measured surface, by least squares; better for a sphere or a cylinder with "
+        "a radius of less than two waviness cutoffs. none: nothing, so that curvature adds "
+        "to the heights.",
     )
     form_size: Length = option(
         Length(automatic=True),
@@ -437,10 +438,11 @@ class TextureOptions(Options):
     )
     crease_angle: float = option(
         50.0,
-        "Edges between faces whose planes differ by more are creases, where the form turns "
-        "as far, too. The surface within a waviness cutoff of them, and of boundaries, is "
-        "left out: it has the height 0. Holes of up to half a cutoff are points missing, "
-        "and leave nothing out. 180 keeps creases; a plane, sphere or cylinder has none.",
+        "Edges between faces whose planes differ by more than this are creases, if the form "
+        "turns as much. The surface within a waviness cutoff of them, and of boundaries, is "
+        "left out: it gets the height 0. Holes of up to a quarter of a cutoff count as "
+        "missing points: nothing is left out around them. With 180 no edge is a crease; a "
+        "plane, sphere or cylinder has none.",
         Limits(0, 180),
     )
     selected: bool = option(

@@ -10,7 +10,7 @@ from typing import TypedDict
 
 class _FilterReport(TypedDict):
     accuracy_reached: bool
-    """Whether the evaluation was as accurate as it should be."""
+    """Whether the evaluation reached its accuracy."""
     area_after: float
     """Of the filtered surface, length²."""
     area_before: float
@@ -41,7 +41,7 @@ class _FilterReport(TypedDict):
     mean_edge: float
     """Mean edge, length."""
     passes: int
-    """Passes of automatic steps, whose number repeats the run exactly; 0: not automatic."""
+    """Passes of automatic steps: this number repeats the run exactly; 0: not automatic."""
     preserved_volumes: int
     """Number of closed components whose volume was preserved."""
     products: int
@@ -61,7 +61,7 @@ class _FilterReport(TypedDict):
     """With automatic steps, estimated error over all but a thousandth of the input surface, without
     what collapses, length."""
     step_sizes: list[float]
-    """Fractional powers of the steps, in their order; their sum is 1."""
+    """Fractional powers of the steps, in order; their sum is 1."""
     steps: int
     """Number of steps; with automatic steps, of the last pass."""
     thin_part_factor: float
@@ -103,7 +103,7 @@ class _DenoiseReport(TypedDict):
     estimated_noise_height: float
     """Measured standard deviation of the noise along the normals, length."""
     estimated_noise_size: float
-    """Measured length over which neighbouring vertices have like noise, length."""
+    """Measured distance over which the noise is correlated, length."""
     fixed_vertices: int
     """Number of vertices on a fixed boundary or a crease, unchanged."""
     folded_faces: int
@@ -120,12 +120,12 @@ class _DenoiseReport(TypedDict):
     mean_edge: float
     """Mean edge, length."""
     noise_correlation: float
-    """Of the noise of neighbouring vertices, as measured; above 0.2 it is shape."""
+    """Measured correlation between neighbouring vertices; above 0.2 it is shape."""
     noise_height: float
     """Of the noise that was filtered or found, length; 0: none."""
     noise_kind: str
-    """White, correlated (of a scanner), impulses, scan_lines, rounded (coordinates), local (in
-    places) or voxels; without noise: none, shape (which it may be), tessellation (of CAD),
+    """White, correlated (of a scanner), impulses, scan_lines, rounded (coordinates), local (in some
+    regions) or voxels; without noise: none, shape (it may be noise), tessellation (of CAD),
     stretched (axis), or too_few (vertices)."""
     noise_searched: bool
     """Whether the mesh was searched for noise: not if it has needle triangles, voxels or too few
