@@ -70,7 +70,7 @@ std::string largerTriangles(const Given& given) {
 std::string stablerFilter(const Given& given) {
     if (given.isChoice("laplacian", 1)) return "choose |laplacian = intrinsic delaunay|";
     if (given.isChoice("basis_update", 0))
-        return "a strong filter with |basis_update = full| pinches thin parts off: choose "
+        return "a strong filter with |basis_update = full| pinches off thin parts: choose "
                "|basis_update = conformal|";
     const std::string weaker = weakerInGeneral(given);
     return (weaker.empty() ? "" : weaker + ", or ") + kRemesh;

@@ -161,7 +161,7 @@ std::string nothingText(const Diagnosis& diagnosis, bool isCrumpled) {
                                     "degrees and metres. Bring them to one unit first"
                                   : "at needle triangles, e.g. of CAD models. Remesh first";
     return std::string(
-               "the noise was not removed: that would have folded the surface over, which "
+               "the noise was not removed: that would have folded the surface over, as "
                "happens ") +
            cause + ", or give a smaller noise height or size";
 }

@@ -129,8 +129,8 @@ Warnings partingWarnings(const FilterInput& input, const MeshLengths& mesh, cons
     text << parting.components << " of " << parting.all << " components "
          << (parting.components == 1 ? "moves" : "move") << " up to "
          << lengthAndPercentage(parting.distance, mesh.diagonal)
-         << " away from one that it touched, since each keeps its centre: choose gains nearer to "
-            "1, or select the region to be filtered";
+         << " away from another that it touched, since each keeps its centre: choose gains closer "
+            "to 1, or select the region to be filtered";
     return {{WarningCode::PartedComponents, text.str()}};
 }
 

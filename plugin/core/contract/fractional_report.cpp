@@ -210,8 +210,8 @@ Warnings scalingWarnings(const FilterOptions& options, const FilterResult& resul
     const double gain = TransferFunction(options.transferFunction, result.cutoffFrequency)(0.0);
     if (!(gain > kScaling)) return {};
     std::ostringstream text;
-    text << std::setprecision(3) << "the gain of what is largest is " << gain
-         << ", which scales the whole object. Choose 1 for it to keep its size";
+    text << std::setprecision(3) << "the gain of the largest details is " << gain
+         << ", which scales the whole object. Choose 1 to keep its size";
     return {{WarningCode::WholeScaled, text.str()}};
 }
 
@@ -239,14 +239,15 @@ Warning edgeWarning(const FilterResult& result) {
 Warning shrinkingWarning(const FilterResult& result, double diagonal) {
     const double half = 0.5 * result.featureSize;
     std::ostringstream text;
-    text << percentOf(result.shrunkenPart) << std::setprecision(2)
-         << " of the surface shrinks to lines or points, as it is thin compared with the feature "
-            "size"
-         << (result.toleranceReached
-                 ? ""
-                 : ", and on " + percentOf(result.singularPart) + " the tolerance was not reached")
-         << ". Try |feature_size = " << half << "| (" << 100.0 * half / diagonal
-         << " % of the diagonal), or filter a selection without these parts";
+    text
+        << percentOf(result.shrunkenPart) << std::setprecision(2)
+        << " of the surface shrinks to lines or points, since it is thin compared with the feature "
+           "size"
+        << (result.toleranceReached
+                ? ""
+                : ", and on " + percentOf(result.singularPart) + " the tolerance was not reached")
+        << ". Try |feature_size = " << half << "| (" << 100.0 * half / diagonal
+        << " % of the diagonal), or filter a selection without these parts";
     return {WarningCode::ThinParts, text.str()};
 }
 

@@ -88,8 +88,8 @@ std::string nothingText(const Diagnosis& diagnosis) {
                    "noise height, such as " +
                    height + " (0.1 edges)";
         default:
-            return "found no noise clearly distinct from the shape: not at every vertex, in "
-                   "places, as spikes, or as steps of voxels or rounded coordinates. " +
+            return "found no noise clearly distinct from the shape: neither everywhere nor in some "
+                   "regions, and no spikes, voxel steps or rounded coordinates. " +
                    remedyText(diagnosis.noise, diagnosis.kind == NoiseKind::Shape);
     }
 }

@@ -66,7 +66,7 @@ Entries<Filtered> signalEntries() {
              {"error_estimate",
               "estimated error of the evaluation, relative to the size of what is filtered",
               [](const R& r) -> Value { return r.errorEstimate; }},
-             {"accuracy_reached", "whether the evaluation was as accurate as it should be",
+             {"accuracy_reached", "whether the evaluation reached its accuracy",
               [](const R& r) -> Value { return r.accuracyReached; }},
              {"vertices_without_data", "number of vertices whose value is NaN, unchanged",
               [](const R& r) -> Value { return r.verticesWithoutData; }},

@@ -119,9 +119,9 @@ Warnings percentageWarnings(const MeshLengths& mesh) {
         const char axis = "xyz"[filler.axis];
         text << std::setprecision(9) << filler.vertices << " vertices have " << axis << " = "
              << filler.value
-             << ", far from all others, which defaults do not count: where that stands for "
-             << "missing data, select the rest (|where = " << axis
-             << (filler.isLowest ? " > " : " < ") << filler.value << "|)";
+             << ", far from all others: defaults leave them out. If that stands for missing "
+             << "data, select the rest (|where = " << axis << (filler.isLowest ? " > " : " < ")
+             << filler.value << "|)";
         warnings.push_back({WarningCode::MissingData, text.str()});
     }
     return warnings;

@@ -184,9 +184,9 @@ std::string leftOutText(const Measured& texture) {
     const double most = std::max(texture.leftOutSq, texture.Sq);
     if (texture.leftOutSq == 0.0 || most <= kAlike * std::min(texture.leftOutSq, texture.Sq))
         return {};
-    return "what is left out near boundaries has other heights, of Sq " +
-           shortText(texture.leftOutSq) + ", than what is measured, of " + shortText(texture.Sq) +
-           ". A smaller waviness measures more of it";
+    return "the surface near boundaries is left out, and has other heights: its Sq is " +
+           shortText(texture.leftOutSq) + ", that of the rest " + shortText(texture.Sq) +
+           ". With a smaller |waviness| more of it is measured";
 }
 
 FilterOutput run(const FilterInput& input, const MeshLengths& mesh, const Values& given,
@@ -205,11 +205,11 @@ FilterOutput run(const FilterInput& input, const MeshLengths& mesh, const Values
     output.text = textOf(texture);
     output.warnings = percentageWarnings(mesh);
     if (texture.tooThin > 0)
-        output.warnings.push_back({WarningCode::ThinnerThanCutoff,
-                                   "parts thinner than the waviness cutoff are left out, in all " +
-                                       countText(texture.tooThin) + ", the first is vertex " +
-                                       std::to_string(texture.firstTooThin) +
-                                       ". A smaller cutoff measures them"});
+        output.warnings.push_back(
+            {WarningCode::ThinnerThanCutoff,
+             "parts thinner than the waviness cutoff are left out: " + countText(texture.tooThin) +
+                 ", the first is vertex " + std::to_string(texture.firstTooThin) +
+                 ". With a smaller |waviness| they are measured"});
     if (texture.leftOut > texture.evaluated)
         output.warnings.push_back(
             {WarningCode::LittleMeasured,
@@ -226,8 +226,8 @@ FilterOutput run(const FilterInput& input, const MeshLengths& mesh, const Values
             {WarningCode::SteepTexture, "slopes of the texture are steep, Sdq " +
                                             shortText(texture.Sdq) +
                                             ": on a free shape they make heights 2 % too low, or "
-                                            "more. Choose the plane, sphere or "
-                                            "cylinder that the surface is as |form|"});
+                                            "more. Choose |form| plane, sphere or cylinder if "
+                                            "the surface is one"});
     if (const std::string note = leftOutText(texture); !note.empty())
         output.warnings.push_back({WarningCode::OtherHeights, note});
     // Sq is half of this lower. Waves and noise have .1 % at that height, a terrain with a flat rim
@@ -237,8 +237,8 @@ FilterOutput run(const FilterInput& input, const MeshLengths& mesh, const Values
         output.warnings.push_back({WarningCode::FlatTexture,
                                    shortText(100.0 * texture.flat) +
                                        " % of the area has no texture: its heights are below a "
-                                       "thousandth of Sq, and lower "
-                                       "all means. Select what is rough, such as where nz > 0.5"});
+                                       "thousandth of Sq, which lowers all means. Select what is "
+                                       "rough, such as where nz > 0.5"});
     if (!texture.accuracyReached)
         output.warnings.push_back(
             accuracyWarning(kTextureAccuracy, texture.errorEstimate / mesh.diagonal));

@@ -50,7 +50,7 @@ def test_a_mistake_leaves_the_old_table(cow: Path, existing: Path, tmp_path: Pat
 def test_a_mesh_is_not_replaced_by_the_table(cow: Path, tmp_path: Path) -> None:
     mesh = tmp_path / "other.obj"
     shutil.copy(cow, mesh)
-    assert_fails(command("spectra", cow, "--output", mesh), 2, "is no table of spectra")
+    assert_fails(command("spectra", cow, "--output", mesh), 2, "is not a table of spectra")
     assert mesh.read_bytes() == cow.read_bytes()
 
 

@@ -159,7 +159,9 @@ def test_a_gain_of_what_is_largest_is_said_to_scale_the_object(decimated: Decima
     V, F = decimated("cow.obj")
     for options in ({"pass_gain": 1.5}, {"filter_type": "high-pass", "stop_gain": 1.5}):
         warnings = filter_mesh(V, F, feature_size="5%", **options)[1]["warnings"]
-        assert any("largest is 1.5, which scales the whole object" in text for text in warnings)
+        assert any(
+            "largest details is 1.5, which scales the whole object" in text for text in warnings
+        )
     details = {"filter_type": "high-pass", "stop_gain": 1.0, "pass_gain": 1.5}
     warnings = filter_mesh(V, F, feature_size="5%", **details)[1]["warnings"]
     assert not any("scales" in text for text in warnings)

@@ -95,7 +95,7 @@ def test_what_is_not_as_it_seems_is_told(tmp_path: Path) -> None:
     ]
     told = "\n".join(document.warnings)
     assert "/cage is subdivided when it is shown (catmullClark): its cage is filtered" in told
-    assert "/walks moves its points in time: it stays as it is" in told
+    assert "/walks is animated by its points: it stays as it is" in told
     document.save(tmp_path / "b.usda", [part.vertices + 1 for part in document.parts])
     moved = Usd.Stage.Open(str(tmp_path / "b.usda"))
     after = UsdGeom.Mesh(moved.GetPrimAtPath("/still"))

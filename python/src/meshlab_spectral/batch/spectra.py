@@ -61,7 +61,7 @@ def plan_spectra(
     ]
     refuse_inputs([str(table)], places)
     if table.is_file() and table.stat().st_size and not _is_table(table):
-        raise InputError(f"{table} exists and is no table of spectra: choose another name")
+        raise InputError(f"{table} exists and is not a table of spectra: choose another name")
     described = options.as_dict()
     work = {"task": options.TABLE, "options": described}
     jobs = [Job(place, None, place, work, described, settings.timeout) for place in places]

@@ -72,7 +72,7 @@ def preset_place(name: str) -> Path:
     Raises OptionError when the name is that of another preset, or no word.
     """
     if name in PRESETS or not _NAME.fullmatch(name):
-        why = "is there already" if name in PRESETS else "letters, digits, - and _ make a name"
+        why = "is there already" if name in PRESETS else "a name has only letters, digits, - and _"
         raise OptionError(f"preset {name}: {why}, choose another one")
     preset_folder().mkdir(parents=True, exist_ok=True)
     return preset_folder() / f"{name}.toml"

@@ -106,7 +106,7 @@ def _read_mask(path: Path) -> NDArray[np.float64]:
     except OSError as error:
         raise InputError(f"the mask {path} cannot be read ({error.strerror or error})") from error
     except UnicodeDecodeError as error:
-        raise InputError(f"the mask {path} is no text: give text or .npy") from error
+        raise InputError(f"the mask {path} is not text: give text or .npy") from error
     except (ValueError, TypeError, EOFError, UserWarning) as error:
         raise InputError(f"the mask {path} is not one number for each vertex: {error}") from error
 

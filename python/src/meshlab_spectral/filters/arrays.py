@@ -128,7 +128,7 @@ def check_class(value: Any, expected: type[Any], source: str) -> None:
     """Raise ArgumentError unless a value is of a class, as the function `source` returns it."""
     if not isinstance(value, expected):
         raise ArgumentError(
-            f"{_class_of(value)} is no {expected.__name__}: pass the result of {source}"
+            f"{_class_of(value)} is not a {expected.__name__}: pass the result of {source}"
         )
 
 

@@ -178,7 +178,7 @@ class ScalarsReport(_ScalarsReport, total=False):
     columns: list[ScalarsReport]
     """Of values n x k, their k reports, in place of these."""
     accuracy_reached: bool
-    """Whether the evaluation was as accurate as it should be."""
+    """Whether the evaluation reached its accuracy."""
     components: int
     """Number of connected components of the surface."""
     cutoff_frequency: float
@@ -209,7 +209,7 @@ class ColorsReport(TypedDict):
     """Report of `filter_colors`; lengths are in the units of the mesh."""
 
     accuracy_reached: bool
-    """Whether the evaluation was as accurate as it should be."""
+    """Whether the evaluation reached its accuracy."""
     clamped_values: int
     """Number of red, green and blue levels that were clamped to 0 to 255."""
     components: int

@@ -50,7 +50,9 @@ def read(path: Path) -> Document:
         raise unreadable(path, f"{error!s:.300}" or type(error).__name__) from error
     vertices, faces = _surface(heights, place)
     if not len(faces):
-        raise unsupported(path, "has no three measured heights side by side", "measure it again")
+        raise unsupported(
+            path, "has no three measured heights next to each other", "measure it again"
+        )
     check_vertices(path, vertices)
     return _HeightMap(path, [Part("", vertices, faces, unit=unit)])
 

@@ -86,7 +86,7 @@ def _unfolded(P: Array) -> Iterator[tuple[Indices, Indices]]:
         return
     for polygon in folded.tolist():
         if size > _MOST_CORNERS:
-            raise ValueError(f"a polygon has {size} corners, and would fold: divide it first")
+            raise ValueError(f"a polygon has {size} corners, and would fold: split it first")
         ears = _ears(P[polygon], normals[polygon])
         if ears is not None:
             yield np.array([polygon]), ears

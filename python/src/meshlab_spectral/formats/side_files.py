@@ -22,7 +22,7 @@ def beside(source: Path, name: str) -> Path:
     found = source.parent / name
     why = ""
     if "\0" in name:
-        why = "is no name of a file"
+        why = "is not a file name"
     elif is_outside(source, name):
         why = "is outside its folder: keep it next to the mesh"
     elif not os.path.isfile(found):  # noqa: PTH113 - false for impossible names, too

@@ -194,7 +194,7 @@ class _ThreeMfDocument(Document):
         """Add an object to the parts."""
         mesh.placement = placement_of(mesh.name, matrices, self.warnings)
         if len(matrices) == _MOST_PLACEMENTS:
-            text = f"is placed {_MOST_PLACEMENTS} times or more: other formats get only as many"
+            text = f"is placed {_MOST_PLACEMENTS} times or more: other formats get only that many"
             self.warnings.append(Warned("placement", f"{mesh.name} {text}"))
         placed = mesh.placement.placed(mesh.own)
         faces = mesh.placement.oriented(mesh.faces)

@@ -184,7 +184,7 @@ def read(path: Path) -> Document:
         try:
             message = str(error).rsplit(" : ", 1)[-1]  # after its own lines
         except UnicodeDecodeError:  # of the library's, which quote what was read
-            message = "it holds bytes that are no text"
+            message = "it holds bytes that are not text"
         raise unreadable(path, message) from error
 
 
@@ -199,7 +199,7 @@ def _check_layers(path: Path, entries: list[str]) -> list[str]:
     for inner in ["", *packed[1:]]:
         layer = Sdf.Layer.FindOrOpen(f"{path}[{inner}]" if inner else str(path))
         if layer is None:
-            raise ValueError(f"{shown(inner or path.name)} is no layer of USD")
+            raise ValueError(f"{shown(inner or path.name)} is not a USD layer")
         layer.Reload()  # it may be an older one
 
         def check(where: Any, layer: Any = layer) -> None:
@@ -223,7 +223,7 @@ def _document(path: Path) -> Document:
         with zipfile.ZipFile(path) as archive:
             found = [info for info in archive.infolist() if not info.is_dir()]
         if not found or not found[0].filename.lower().endswith(_LAYERS):
-            raise ValueError("its first file is no layer of USD")
+            raise ValueError("its first file is not a USD layer")
         if any(info.compress_type != zipfile.ZIP_STORED for info in found):
             raise unsupported(
                 path, "is compressed, which USD does not allow", "zip it uncompressed"
@@ -241,7 +241,7 @@ def _document(path: Path) -> Document:
             continue
         name = shown(prim.GetPath())
         if prim.GetPointsAttr().ValueMightBeTimeVarying():
-            text = f"{name} moves its points in time: it stays as it is"
+            text = f"{name} is animated by its points: it stays as it is"
             document.warnings.append(Warned("kept_in_file", text))
             continue
         mesh = meshes.setdefault((spec.layer.identifier, str(spec.path)), _Mesh())
@@ -253,7 +253,7 @@ def _document(path: Path) -> Document:
         document.add(mesh)
     if not document.parts:
         shapes = sorted({prim.GetTypeName() for prim in prims if prim.IsA(UsdGeom.Gprim)})
-        what = "holds no mesh whose points stay in time"
+        what = "holds only meshes that are animated by their points"
         if "Mesh" not in shapes:
             what = f"holds no mesh, only {' and '.join(shapes) or 'other prims'}"
         raise unsupported(path, what, "name a file with one")
