@@ -1,24 +1,18 @@
 # Read by ctest. More than two seconds of processor time: `make quick` leaves them out.
 set_tests_properties(
-  Artefacts.AgreeWithAllEigenvectors
   GeometrySpectrumWithFixedBoundary.AgreesWithAllEigenvectorsOfTheInterior
-  GeometrySpectrum.IsThatOfTheSignalAFilterActsOn
   GeometrySpectrum.ReturnsTheDiagnosisAndTheFeatureSizeOfNoise
   GeometrySpectrum.ContainsAllEnergyOfTheShape
-  GeometrySpectrum.AgreesWithAllEigenvectors
-  GeometrySpectrum.ReturnsTheFeatureSizesAboveWhichTheEnergyLies
   GeometrySpectrum.DoesNotDependOnTheResolutionForLargeFeatures
   GeometrySpectrum.CanBeInterruptedAtAnyStage
   SurfaceTexture.TransmitsWavesAboveFittedShapesAsTheStandardSays
   AutomaticSteps.KeepTheirToleranceAndEstimateTheirErrorWithinAFactorOfThree
   EqualizerBands.AddUpToTheFilterOfOneStep
   FractionalFilter.ReportsThatTheAccuracyIsNotReached
-  FractionalFilter.ConformalUpdateRecomputesTheMassesAndKeepsTheStiffness
   FractionalFilter.IdealResponseInFullSpectrumIsExact
   FixedBoundary.FilterEqualsAllEigenvectorsOfTheInterior
   FixedSteps.ConvergeToTheFlowAtFirstOrder
   MidpointSteps.ConvergeToTheSameFlowAtSecondOrder
-  SignalFilter.MultipliesEveryEigenfunctionByItsGain
   TruncatedSteps.ComputeOneBasisWhereTheResidualIsKept
   TruncatedSteps.DoNotSplitAClusterOfHarmonics
   TruncatedSteps.ComputeEveryBasisWhereThatIsFaster

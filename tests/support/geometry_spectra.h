@@ -11,7 +11,4 @@ SpectrumOptions withBasis(int basisSize, LaplacianKind kind = LaplacianKind::Cot
 /// With plain cotangents.
 GeometrySpectrum spectrumOf(const Mesh& mesh, int basisSize, Boundary boundary = Boundary::Free);
 
-/// Compares bases of several sizes with the whole one, of up to 2,000 vertices.
-void expectWhatAllEigenvectorsSay(const Mesh& mesh, Boundary boundary);
-
 }  // namespace spectral::testing

@@ -16,7 +16,6 @@ namespace {
 
 using testing::classesOfMeshes;
 using testing::Mesh;
-using testing::Operator;
 
 ArtefactOptions withFeatureSize(double featureSize,
                                 LaplacianKind kind = LaplacianKind::IntrinsicDelaunay) {
@@ -30,29 +29,6 @@ Artefacts measured(const Mesh& mesh, double part,
                    LaplacianKind kind = LaplacianKind::IntrinsicDelaunay) {
     return measureArtefacts(mesh.V, mesh.F,
                             withFeatureSize(part * boundingBoxDiagonal(mesh.V), kind));
-}
-
-TEST(Artefacts, AgreeWithAllEigenvectors) {
-    for (const Mesh& mesh : classesOfMeshes())
-        for (const double part : {0.05, 0.15, 0.5}) {
-            const Operator A(mesh);
-            const HarmonicBasis dense = denseBasis(A);
-            const double featureSize = part * boundingBoxDiagonal(mesh.V);
-            const double lambda_c = std::pow(2.0 * kPi / featureSize, 2);
-            const Vertices smooth = testing::filteredDense(A, dense, [lambda_c](double omega) {
-                return 1.0 / (1.0 + std::pow(omega * omega / (4.0 * lambda_c), 4));
-            });
-            const Eigen::VectorXd length = (mesh.V - smooth).rowwise().norm();
-            const Eigen::VectorXd& D = A.D;
-
-            const Artefacts artefacts = measureArtefacts(
-                mesh.V, mesh.F, withFeatureSize(featureSize, LaplacianKind::Cotangent));
-            const double tolerance = 1e-7 * boundingBoxDiagonal(mesh.V);
-            EXPECT_LT((artefacts.length - length).cwiseAbs().maxCoeff(), tolerance);
-            EXPECT_LT(artefacts.errorEstimate, tolerance);
-            EXPECT_NEAR(artefacts.maximum, length.maxCoeff(), tolerance);
-            EXPECT_NEAR(artefacts.rms, std::sqrt(length.cwiseAbs2().dot(D) / D.sum()), tolerance);
-        }
 }
 
 /// Relative error of the closed form on a sphere of radius r: its coordinates are harmonics of

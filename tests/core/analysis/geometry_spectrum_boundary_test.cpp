@@ -5,13 +5,10 @@
 #include <cmath>
 #include <string>
 
-#include "core/filter/fractional_filter.h"
 #include "core/laplacian/interior.h"
 #include "core/mesh/mesh.h"
 #include "core/mesh/surface.h"
 #include "core/support/errors.h"
-#include "core/support/frequency.h"
-#include "core/transfer/transfer_function.h"
 #include "support/dense_eigenpairs.h"
 #include "support/evaluation.h"
 #include "support/geometry_spectra.h"
@@ -19,7 +16,6 @@
 namespace spectral {
 namespace {
 
-using testing::expectWhatAllEigenvectorsSay;
 using testing::Mesh;
 using testing::Operator;
 using testing::spectrumOf;
@@ -32,7 +28,6 @@ std::vector<Mesh> openMeshes() {
 
 TEST(GeometrySpectrumWithFixedBoundary, AgreesWithAllEigenvectorsOfTheInterior) {
     for (const Mesh& mesh : openMeshes()) {
-        expectWhatAllEigenvectorsSay(mesh, Boundary::Fixed);
         // By hand: U = X - H, H harmonic, W_II H_I = -W_IB X_B; minus the mean if none is fixed.
         const Operator A(mesh);
         const Components components = connectedComponents(mesh.F, mesh.V.rows());
@@ -92,31 +87,6 @@ TEST(GeometrySpectrumWithFixedBoundary, FallsFasterThanWithAFreeBoundary) {
         mesh.V(i, 2) = 1e-3 * x * (a - x) * y * (b - y);
     }
     EXPECT_NEAR(slope(Boundary::Fixed), 2.5, 0.25);
-}
-
-TEST(GeometrySpectrum, IsThatOfTheSignalAFilterActsOn) {
-    // A filter removes (1 - F)^2 of the energy of every harmonic.
-    for (const Mesh& mesh : openMeshes())
-        for (const Boundary boundary : {Boundary::Free, Boundary::Fixed}) {
-            const GeometrySpectrum spectrum =
-                spectrumOf(mesh, static_cast<int>(mesh.V.rows()), boundary);
-            FilterOptions options;
-            options.featureSize = 0.3 * spectrum.diagonal;
-            options.steps = 1;
-            options.laplacian = LaplacianKind::Cotangent;
-            options.boundary = boundary;
-            const Vertices moved = fractionalFilter(mesh.V, mesh.F, options).V;
-
-            const TransferFunction gain(options.transferFunction,
-                                        cutoffFrequency(options.featureSize));
-            double expected = 0.0;
-            for (Index i = 0; i < spectrum.frequencies.size(); ++i)
-                expected +=
-                    std::pow((1.0 - gain(spectrum.frequencies[i])) * spectrum.amplitudes[i], 2);
-            const Eigen::VectorXd D = lumpedMass(mesh.V, mesh.F);
-            const double removed = (moved - mesh.V).rowwise().squaredNorm().dot(D);
-            EXPECT_NEAR(removed / (expected * spectrum.area), 1.0, 1e-4);
-        }
 }
 
 TEST(GeometrySpectrumWithFixedBoundary, EqualsTheFreeSpectrumOnAClosedMesh) {

@@ -17,7 +17,6 @@
 namespace spectral {
 namespace {
 
-using testing::expectWhatAllEigenvectorsSay;
 using testing::Mesh;
 using testing::Operator;
 using testing::spectrumOf;
@@ -31,7 +30,7 @@ std::vector<Mesh> classesOfMeshes() {
 
 TEST(GeometrySpectrum, ContainsAllEnergyOfTheShape) {
     for (const Mesh& mesh : classesOfMeshes())
-        for (const int basisSize : {0, 4, 50, 200, 5000}) {
+        for (const int basisSize : {0, 50, 5000}) {
             const Operator A(mesh);
             Eigen::MatrixXd X = mesh.V;
             A.constants.remove(X);
@@ -48,32 +47,6 @@ TEST(GeometrySpectrum, ContainsAllEnergyOfTheShape) {
             for (Index j = 0; j < last; ++j)
                 EXPECT_LE(spectrum.cumulativeEnergy[j], spectrum.cumulativeEnergy[j + 1]);
         }
-}
-
-TEST(GeometrySpectrum, AgreesWithAllEigenvectors) {
-    for (const Mesh& mesh : classesOfMeshes()) {
-        EXPECT_EQ(spectrumOf(mesh, static_cast<int>(mesh.V.rows())).frequencies.size(),
-                  mesh.V.rows());
-        expectWhatAllEigenvectorsSay(mesh, Boundary::Free);
-    }
-}
-
-TEST(GeometrySpectrum, ReturnsTheFeatureSizesAboveWhichTheEnergyLies) {
-    for (const Mesh& mesh : classesOfMeshes()) {
-        const GeometrySpectrum dense = spectrumOf(mesh, static_cast<int>(mesh.V.rows()));
-        for (const int basisSize : {4, 100}) {
-            const GeometrySpectrum spectrum = spectrumOf(mesh, basisSize);
-            const double sizes[] = {spectrum.featureSize50, spectrum.featureSize90,
-                                    spectrum.featureSize99};
-            const double exact[] = {dense.featureSize50, dense.featureSize90, dense.featureSize99};
-            const double last = 2.0 * kPi / spectrum.frequencies[spectrum.frequencies.size() - 1];
-            for (int part = 0; part < 3; ++part) {
-                const double octavesOff = std::abs(std::log2(sizes[part] / exact[part]));
-                const bool inBasis = exact[part] > 1.001 * last;
-                EXPECT_LT(octavesOff, inBasis ? 1e-6 : 0.75);
-            }
-        }
-    }
 }
 
 TEST(GeometrySpectrum, IsOneFrequencyForASphere) {
@@ -307,7 +280,7 @@ TEST(GeometrySpectrum, CanBeInterruptedAtAnyStage) {
     geometrySpectrum(mesh.V, mesh.F, withBasis(20), counting);
     ASSERT_GT(reports, 3);
     // The number of reports from the harmonics depends on the threads.
-    for (int stop = 1; stop <= reports; ++stop) {
+    for (int stop = 1; stop <= reports; stop += 1 + stop / 8) {
         int seen = 0;
         const Progress progress([&](double, const std::string&) { return ++seen < stop; });
         try {

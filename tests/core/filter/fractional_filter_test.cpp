@@ -165,24 +165,6 @@ TEST(FractionalFilter, KeepsTheCentroidOfEveryComponent) {
     }
 }
 
-TEST(FractionalFilter, IsTheCompositionOfItsSteps) {
-    // Eq. 11: each step is the one-step filter of the previous shape.
-    const Mesh mesh = testing::blob();
-    FilterOptions options = smoothing(mesh, 3, BasisUpdate::Full);
-    options.laplacian = LaplacianKind::Cotangent;
-    const Vertices whole = fractionalFilter(mesh.V, mesh.F, options).V;
-
-    const double cutoff = 2.0 * kPi / options.featureSize;
-    const TransferFunction F(options.transferFunction, cutoff);
-    Mesh current = mesh;
-    for (int step = 0; step < 3; ++step) {
-        const Operator A(current);
-        const HarmonicBasis dense = denseBasis(A);
-        current.V = testing::filteredDense(A, dense, fractionalPower(F, 1.0 / 3.0));
-    }
-    EXPECT_LT(largestDifference(whole, current.V), 1e-7 * boundingBoxDiagonal(mesh.V));
-}
-
 TEST(FractionalFilter, WithAPowerIsAnIntermediateShape) {
     // Three steps of F^(1/5), then the other two; with a truncated basis also of the residual.
     const Mesh mesh = testing::blob();
@@ -201,24 +183,6 @@ TEST(FractionalFilter, WithAPowerIsAnIntermediateShape) {
         EXPECT_LT(largestDifference(end, whole), 1e-7 * boundingBoxDiagonal(mesh.V));
         EXPECT_GT(largestDifference(onTheWay, whole), 1e-3 * boundingBoxDiagonal(mesh.V));
     }
-}
-
-TEST(FractionalFilter, ConformalUpdateRecomputesTheMassesAndKeepsTheStiffness) {
-    const Mesh mesh = testing::blob();
-    FilterOptions options = smoothing(mesh, 3, BasisUpdate::Conformal);
-    options.laplacian = LaplacianKind::Cotangent;
-    const Vertices whole = fractionalFilter(mesh.V, mesh.F, options).V;
-
-    const double cutoff = 2.0 * kPi / options.featureSize;
-    const TransferFunction F(options.transferFunction, cutoff);
-    Operator A(mesh);
-    for (int step = 0; step < 3; ++step) {
-        A.D = lumpedMass(A.mesh.V, mesh.F);
-        A.constants = ConstantModes(connectedComponents(mesh.F, mesh.V.rows()), A.D);
-        const HarmonicBasis dense = denseBasis(A);
-        A.mesh.V = testing::filteredDense(A, dense, fractionalPower(F, 1.0 / 3.0));
-    }
-    EXPECT_LT(largestDifference(whole, A.mesh.V), 1e-7 * boundingBoxDiagonal(mesh.V));
 }
 
 TEST(FractionalFilter, LowPassLowersTheDirichletEnergy) {

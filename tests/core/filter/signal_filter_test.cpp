@@ -43,44 +43,6 @@ Eigen::MatrixXd filtered(const Mesh& mesh, const Eigen::MatrixXd& Q,
     return filterSignal(mesh.V, mesh.F, Q, options).Y;
 }
 
-TEST(SignalFilter, MultipliesEveryEigenfunctionByItsGain) {
-    for (const Mesh& mesh : classesOfMeshes()) {
-        const Operator A(mesh);
-        const HarmonicBasis dense = denseBasis(A);
-        for (TransferFunctionOptions transfer : testing::smoothTransferFunctions()) {
-            SignalFilterOptions options = lowPass(mesh);
-            options.transferFunction = transfer;
-            const TransferFunction F(transfer, cutoffFrequency(options.featureSize));
-            for (const Index k : {A.constants.count(), 17, 90}) {
-                const Eigen::VectorXd phi = dense.Phi.col(k);
-                const FilteredSignal result = filterSignal(mesh.V, mesh.F, phi, options);
-                const double gain = F(std::sqrt(dense.lambda[k]));
-                EXPECT_LT(largest(result.Y - gain * phi), kAccuracy * range(phi))
-                    << testing::describe(transfer) << ", harmonic " << k;
-            }
-        }
-    }
-}
-
-TEST(SignalFilter, AgreesWithAllEigenvectors) {
-    for (const Mesh& mesh : classesOfMeshes()) {
-        const Operator A(mesh);
-        const HarmonicBasis dense = denseBasis(A);
-        const Eigen::MatrixXd Q = noise(mesh.V.rows(), 4, 5);
-        const SignalFilterOptions options = lowPass(mesh);
-        const TransferFunction F(options.transferFunction, cutoffFrequency(options.featureSize));
-        const Eigen::MatrixXd expected = applyInBasis(dense, A, fractionalPower(F, 1.0), 0.0, Q);
-        const FilteredSignal result = filterSignal(mesh.V, mesh.F, Q, options);
-        EXPECT_FALSE(result.isConstant);
-        EXPECT_TRUE(result.accuracyReached);
-        EXPECT_LT(largest(result.Y - expected), kAccuracy * largest(Q));
-        const Eigen::MatrixXd change = expected - Q;
-        EXPECT_NEAR(result.maxChange, largest(change), kAccuracy);
-        const Eigen::VectorXd squares = change.rowwise().squaredNorm() / 4.0;
-        EXPECT_NEAR(result.rmsChange, std::sqrt(A.D.dot(squares) / A.area()), kAccuracy);
-    }
-}
-
 /// Root mean square error, over both signals, of the closed form on a sphere of radius r: x and x y
 /// are harmonics of degree 1 and 2, whose eigenvalues are l (l + 1) / r^2.
 double sphereError(int levels) {

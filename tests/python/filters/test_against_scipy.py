@@ -16,6 +16,8 @@ from transfer_functions import RESPONSES, TYPES, gain_of
 Decimated = Callable[..., tuple[NDArray[Any], NDArray[Any]]]
 
 AGREEMENT = 1e-6  # of the diagonal of the bounding box
+FACES = 800  # the time of the reference is cubic
+BASIS_SIZE = 100
 
 
 def assert_full_spectrum_agrees(
@@ -48,14 +50,14 @@ def test_one_step_agrees_for_every_type_and_smooth_response(
     record_property: Callable[..., None],
 ) -> None:
     options = {**TYPES[filter_type], **RESPONSES[response], "steps": 1}
-    assert_full_spectrum_agrees(decimated("cow.obj", 2000), options, record_property)
+    assert_full_spectrum_agrees(decimated("cow.obj", FACES), options, record_property)
 
 
 @pytest.mark.parametrize("basis_update", ["full", "conformal"])
 def test_a_custom_expression_agrees(
     basis_update: str, decimated: Decimated, record_property: Callable[..., None]
 ) -> None:
-    V, F = decimated("cow.obj", 2000)
+    V, F = decimated("cow.obj", FACES)
     options = {
         "filter_type": "custom",
         "transfer_function": "0.2 + 1.5*w/(1 + w^3)",
@@ -82,7 +84,7 @@ def test_a_custom_expression_agrees(
 def test_the_uniform_laplacian_agrees(
     basis_update: str, decimated: Decimated, record_property: Callable[..., None]
 ) -> None:
-    V, F = decimated("bunny.obj", 2400)  # which has a boundary
+    V, F = decimated("bunny.obj", FACES)  # which has a boundary
     options = {
         "feature_size": percent(8),
         "laplacian": "uniform",
@@ -98,7 +100,7 @@ def test_the_uniform_laplacian_agrees(
 
 
 def test_an_equalizer_agrees(decimated: Decimated, record_property: Callable[..., None]) -> None:
-    V, F = decimated("cow.obj", 2000)
+    V, F = decimated("cow.obj", FACES)
     options = {
         "filter_type": "custom",
         "transfer_function": "40%:1, 20%:1.5, 10%:0.8, 5%:0.2",
@@ -137,15 +139,16 @@ def test_one_step_agrees_on_every_sample(
     record_property: Callable[..., None],
 ) -> None:
     options = {**TYPES[filter_type], "steps": 1}
-    assert_full_spectrum_agrees(decimated(sample_name), options, record_property)
+    assert_full_spectrum_agrees(decimated(sample_name, FACES), options, record_property)
 
 
-@pytest.mark.parametrize("filter_type", ["low-pass", "enhancement"])
-@pytest.mark.parametrize("basis_update", ["full", "conformal"])
+@pytest.mark.parametrize(
+    ("filter_type", "basis_update"), [("low-pass", "full"), ("enhancement", "conformal")]
+)
 def test_eight_steps_agree_on_every_sample(
     sample_name: str,
-    basis_update: str,
     filter_type: str,
+    basis_update: str,
     decimated: Decimated,
     record_property: Callable[..., None],
 ) -> None:
@@ -157,11 +160,10 @@ def test_eight_steps_agree_on_every_sample(
         "steps": 8,
         "basis_update": basis_update,
     }
-    assert_full_spectrum_agrees(decimated(sample_name), options, record_property)
+    assert_full_spectrum_agrees(decimated(sample_name, FACES), options, record_property)
 
 
-@pytest.mark.parametrize("basis_update", ["full", "conformal"])
-@pytest.mark.parametrize("steps", [1, 8])
+@pytest.mark.parametrize(("steps", "basis_update"), [(1, "none"), (8, "full"), (8, "conformal")])
 def test_intrinsic_delaunay_agrees_with_robust_laplacian(
     sample_name: str,
     steps: int,
@@ -175,7 +177,7 @@ def test_intrinsic_delaunay_agrees_with_robust_laplacian(
         "steps": steps,
         "basis_update": basis_update,
     }
-    assert_full_spectrum_agrees(decimated(sample_name), options, record_property)
+    assert_full_spectrum_agrees(decimated(sample_name, FACES), options, record_property)
 
 
 def test_a_conformal_share_agrees(
@@ -188,14 +190,14 @@ def test_a_conformal_share_agrees(
         "basis_update": "full",
         "conformal_share": 0.25,  # exact in a 32-bit float
     }
-    assert_full_spectrum_agrees(decimated("cow.obj"), options, record_property)
+    assert_full_spectrum_agrees(decimated("cow.obj", FACES), options, record_property)
 
 
 def test_eight_steps_without_update_agree(
     decimated: Decimated, record_property: Callable[..., None]
 ) -> None:
     options = {"steps": 8, "basis_update": "none"}
-    assert_full_spectrum_agrees(decimated("cow.obj", 2000), options, record_property)
+    assert_full_spectrum_agrees(decimated("cow.obj", FACES), options, record_property)
 
 
 @pytest.mark.parametrize("basis_update", ["full", "conformal"])
@@ -203,7 +205,7 @@ def test_eight_steps_without_update_agree(
 def test_a_part_of_a_filter_agrees(
     filter_type: str, basis_update: str, decimated: Decimated
 ) -> None:
-    V, F = decimated("cow.obj", 2000)
+    V, F = decimated("cow.obj", FACES)
     options = {
         **TYPES[filter_type],
         "feature_size": percent(15),
@@ -223,14 +225,14 @@ def test_ideal_low_pass_agrees(
     sample_name: str, decimated: Decimated, record_property: Callable[..., None]
 ) -> None:
     options = {"response": "ideal", "steps": 1}
-    assert_full_spectrum_agrees(decimated(sample_name), options, record_property)
+    assert_full_spectrum_agrees(decimated(sample_name, FACES), options, record_property)
 
 
 @pytest.mark.parametrize("reinject_residual", [True, False], ids=["residual", "no residual"])
 @pytest.mark.parametrize(
     ("steps", "basis_update"), [(1, "none"), (8, "conformal"), (8, "full")], ids=str
 )
-@pytest.mark.parametrize("filter_type", ["low-pass", "sharpening", "enhancement"])
+@pytest.mark.parametrize("filter_type", ["low-pass", "enhancement"])
 def test_truncated_basis_agrees(
     filter_type: str,
     steps: int,
@@ -245,7 +247,7 @@ def test_truncated_basis_agrees(
         "feature_size": percent(15),
         "laplacian": "cotangent",
         "spectrum": "truncated",
-        "basis_size": 200,
+        "basis_size": 2 * BASIS_SIZE,
         "reinject_residual": reinject_residual,
         "steps": steps,
         "basis_update": basis_update,
@@ -267,7 +269,7 @@ def test_truncated_basis_agrees(
 
 
 def test_eigenvalues_of_a_truncated_basis_agree(sample_name: str, decimated: Decimated) -> None:
-    V, F = decimated(sample_name)
+    V, F = decimated(sample_name, FACES)
     _, report = filter_arrays(
         V, F, spectrum="truncated", basis_size=100, steps=1, laplacian="cotangent"
     )
@@ -298,14 +300,14 @@ def test_a_fixed_boundary_agrees(
     decimated: Decimated,
     record_property: Callable[..., None],
 ) -> None:
-    V, F = lower_part(*decimated("bunny.obj", 2400))
+    V, F = lower_part(*decimated("bunny.obj", FACES))
     options = {
         **TYPES[filter_type],
         "feature_size": percent(10),
         "laplacian": laplacian,
         "boundary": "fixed",
         "spectrum": spectrum,
-        "basis_size": 200,
+        "basis_size": BASIS_SIZE,
         "steps": steps,
         "basis_update": basis_update,
     }
@@ -317,12 +319,12 @@ def test_a_fixed_boundary_agrees(
         steps,
         basis_update,
         laplacian,
-        200 if spectrum == "truncated" else None,
+        BASIS_SIZE if spectrum == "truncated" else None,
     )
     error = largest_distance(Y, expected) / diagonal(V)
     record_property("largest_distance_in_diagonals", float(error))
     assert largest_distance(expected, V) > 1e-3 * diagonal(V), "a test that moves nothing"
     assert error < AGREEMENT
     rim = reference.boundary_vertices(F)
-    assert report["fixed_vertices"] == len(rim) > 30
+    assert report["fixed_vertices"] == len(rim) > 15
     np.testing.assert_array_equal(Y[rim], V[rim])

@@ -34,7 +34,7 @@ Arrays = tuple[NDArray[np.float64], NDArray[Any]]
 
 @pytest.fixture(scope="module")
 def cow(decimated: Callable[..., Any]) -> Arrays:
-    V, F = decimated("cow.obj")
+    V, F = decimated("cow.obj", 2400)
     return V, F
 
 

@@ -196,7 +196,7 @@ def test_a_power_is_that_of_the_gains(decimated: Decimated) -> None:
 def test_colours_agree_with_scipy_to_one_level_and_alpha_is_kept(
     kind: str, sample_name: str, decimated: Decimated
 ) -> None:
-    V, F = decimated(sample_name)
+    V, F = decimated(sample_name, 2400)
     levels = colours(V)
     mesh_set = coloured(V, F, levels)
     options = {"laplacian": "cotangent", **TYPES[kind]}
