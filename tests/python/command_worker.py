@@ -15,8 +15,9 @@ import sys
 import tempfile
 from typing import IO, Any
 
-# What every command imports, at once or when it parses its options.
+# What every command imports, at once or when it parses its options; and what draws plots.
 import filelock  # noqa: F401
+import matplotlib.figure  # noqa: F401
 import meshlab_spectral.cli.app  # noqa: F401
 import psutil  # noqa: F401
 import pydantic.type_adapter  # noqa: F401

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import json
 import subprocess
-import sys
 from pathlib import Path
 from typing import Any
 
+import commands
 import matplotlib.image
 import numpy as np
 import pymeshlab
@@ -20,14 +20,7 @@ from meshlab_spectral.files.meshes import load_arrays
 
 
 def command(*arguments: object, folder: Path | None = None) -> subprocess.CompletedProcess[str]:
-    return subprocess.run(
-        [sys.executable, "-m", "meshlab_spectral.cli", "spectrum", *map(str, arguments)],
-        cwd=folder,
-        capture_output=True,
-        text=True,
-        timeout=120,
-        check=False,
-    )
+    return commands.command("spectrum", *arguments, folder=folder)
 
 
 def colours(path: Path) -> Any:

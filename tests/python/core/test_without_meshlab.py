@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import json
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 from commands import command, messages_in
-from format_samples import SAMPLES, Sample
+from format_samples import SAMPLES
 
 pytestmark = pytest.mark.slow
 
@@ -25,52 +24,37 @@ def without_meshlab(tmp_path: Path) -> dict[str, str]:
     return {"PYTHONPATH": str(folder)}
 
 
-@pytest.mark.parametrize(
-    ("task", "sample"),
-    [*(("filter", one) for one in SAMPLES)],
-)
-def test_a_patched_file_is_filtered(
-    task: str, sample: Sample, tmp_path: Path, without_meshlab: dict[str, str]
+def test_a_batch_filters_every_file_that_is_patched(
+    tmp_path: Path, without_meshlab: dict[str, str]
 ) -> None:
-    source = tmp_path / sample.name
-    sample.write(source)
-    target = tmp_path / "out" / sample.name
-    target.parent.mkdir()
-    done = command(task, source, target, **without_meshlab)
+    source, target = tmp_path / "in", tmp_path / "out"
+    source.mkdir()
+    names = [f"{number} {sample.name}" for number, sample in enumerate(SAMPLES)]
+    for name, sample in zip(names, SAMPLES, strict=True):
+        sample.write(source / name)
+    done = command("batch", source, "--output", target, "--workers", 1, **without_meshlab)
     assert done.returncode == 0, done.stderr
-    before, after = sample.read(source)["coordinates"], sample.read(target)["coordinates"]
-    assert np.shape(before) == np.shape(after)
-    assert not np.array_equal(before, after)
+    for name, sample in zip(names, SAMPLES, strict=True):
+        before, after = (sample.read(folder / name)["coordinates"] for folder in (source, target))
+        assert np.shape(before) == np.shape(after)
+        assert not np.array_equal(before, after)
 
 
 @pytest.mark.parametrize(
-    ("task", "sample"),
-    [*(("info", one) for one in SAMPLES), ("spectrum", SAMPLES[0])],
+    "words",
+    [
+        ("filter", "mesh", "out.ply"),
+        ("denoise", "mesh", "out.ply", "--noise-height", "0.3e"),
+        ("info", "mesh", "--json"),
+        ("spectrum", "mesh", "--json"),
+    ],
 )
-def test_a_patched_file_is_measured(
-    task: str, sample: Sample, tmp_path: Path, without_meshlab: dict[str, str]
+def test_a_command_runs(
+    words: tuple[str, ...], tmp_path: Path, without_meshlab: dict[str, str]
 ) -> None:
-    source = tmp_path / sample.name
-    sample.write(source)
-    done = command(task, source, "--json", **without_meshlab)
-    assert done.returncode == 0, done.stderr
-    assert json.loads(done.stdout)
-
-
-def test_a_file_is_denoised(tmp_path: Path, without_meshlab: dict[str, str]) -> None:
-    source = tmp_path / SAMPLES[0].name
-    SAMPLES[0].write(source)
-    options = ["--noise-height", "0.3e"]
-    done = command("denoise", source, tmp_path / "out.ply", *options, **without_meshlab)
-    assert done.returncode == 0, done.stderr
-
-
-def test_a_batch_runs(tmp_path: Path, without_meshlab: dict[str, str]) -> None:
-    folder = tmp_path / "in"
-    folder.mkdir()
-    for sample in SAMPLES:
-        sample.write(folder / sample.name)
-    done = command("batch", folder, "--output", tmp_path / "out", "--workers", 1, **without_meshlab)
+    SAMPLES[0].write(tmp_path / "mesh.ply")
+    arguments = ["mesh.ply" if word == "mesh" else word for word in words]
+    done = command(*arguments, folder=tmp_path, **without_meshlab)
     assert done.returncode == 0, done.stderr
 
 
