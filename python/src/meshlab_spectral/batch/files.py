@@ -113,7 +113,7 @@ def _planned(
     own = {one.name: of_filter.pop(one.name) for one in fields(Settings) if one.name in of_filter}
     settings = Settings(**own)
     is_script = settings.script and options is None and not of_filter
-    chosen = None if is_script else table.given(options, of_filter)
+    chosen = None if is_script else table.from_call(options, of_filter)
     places = [inputs] if isinstance(inputs, str | Path) else inputs
     return run_batch(plan_batch(places, output, settings, chosen), Tally())
 

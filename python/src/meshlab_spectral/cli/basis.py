@@ -19,7 +19,7 @@ from meshlab_spectral.workers.single_file import write_in_child
 
 @with_options(BasisOptions)
 def basis_command(
-    given: dict[str, Any],
+    explicit: dict[str, Any],
     source: Source,
     output: Annotated[
         Path,
@@ -52,7 +52,7 @@ def basis_command(
       meshlab-spectral basis scan.ply --pictures scan.png --modes 1,2,3,5,8
     """
     with errors_reported("finished files are complete"):
-        options = BasisOptions.from_dict(given)
+        options = BasisOptions.from_dict(explicit)
         shown = None if modes is None else _modes(modes, options.basis_size)
         check_ending(output, "a basis is a NumPy archive", ".npz")
         refuse_existing(output, overwrite)

@@ -35,7 +35,7 @@ from meshlab_spectral.filters.options import DenoiseOptions, FilterOptions
 
 @with_options(FilterOptions, DenoiseOptions, Settings)
 def batch_command(
-    given: dict[str, Any],
+    explicit: dict[str, Any],
     settings: Settings,
     inputs: Inputs,
     output: Annotated[
@@ -78,9 +78,9 @@ def batch_command(
         )
     with errors_reported(INTERRUPTED):
         options: Options | None = None
-        if settings.script is None or given or recipe is not None or denoise:
+        if settings.script is None or explicit or recipe is not None or denoise:
             table = FilterOptions if recipe is None else load_recipe(recipe)[0]
-            options = chosen_options(DenoiseOptions if denoise else table, given, recipe)
+            options = chosen_options(DenoiseOptions if denoise else table, explicit, recipe)
         if save_preset is not None:
             save_recipe = preset_place(save_preset)
         begin = time.monotonic()

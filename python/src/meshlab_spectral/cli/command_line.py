@@ -221,7 +221,7 @@ def _option(name: re.Match[str]) -> str:
     return "--" + name[0].replace("_", "-")
 
 
-def _written(names: list[str]) -> str:
+def _name_used(names: list[str]) -> str:
     """Return the name of an option that the command line has; the longest of those it may have."""
     words = {word.partition("=")[0] for word in sys.argv[1:]}
     return max(words.intersection(names) or names, key=len)
@@ -233,7 +233,7 @@ def _described(error: Any) -> str:
     name = getattr(error, "param_hint", None)
     if name is None and parameter is not None:
         is_option = parameter.param_type_name == "option"
-        name = _written(parameter.opts) if is_option else parameter.metavar or parameter.name
+        name = _name_used(parameter.opts) if is_option else parameter.metavar or parameter.name
     if type(error).__name__ == "MissingParameter":
         return f"{name} is missing"
     if type(error).__name__ == "NoSuchOption":

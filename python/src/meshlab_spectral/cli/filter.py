@@ -89,7 +89,7 @@ def _command_with(table: type[Options], help_text: str) -> Command:
 
     @with_options(table, Region)
     def command(
-        given: dict[str, Any],
+        explicit: dict[str, Any],
         region: Region,
         source: Annotated[
             Path,
@@ -175,24 +175,27 @@ def _command_with(table: type[Options], help_text: str) -> Command:
         """Filter one file, in a child process, and print the report."""
         if target is not None and output is not None:
             raise typer.BadParameter(f"OUTPUT is {target} already", param_hint="--output")
-        place = target or output
-        if place is None:
+        destination = target or output
+        if destination is None:
             raise typer.BadParameter("name the mesh to write", param_hint="OUTPUT")
-        if place.exists() and source.exists() and place.samefile(source):
+        if destination.exists() and source.exists() and destination.samefile(source):
             raise typer.BadParameter(
-                f"{place} is INPUT itself and would be lost: choose another name",
+                f"{destination} is INPUT itself and would be lost: choose another name",
                 param_hint="OUTPUT",
             )
-        if place.is_file() and not overwrite:
+        if destination.is_file() and not overwrite:
             raise typer.BadParameter(
-                f"{place} exists: choose another name, or replace it with --overwrite",
+                f"{destination} exists: choose another name, or replace it with --overwrite",
                 param_hint="OUTPUT",
             )
-        if color_displacement is not None and color_displacement.absolute() == place.absolute():
+        if (
+            color_displacement is not None
+            and color_displacement.absolute() == destination.absolute()
+        ):
             raise typer.BadParameter(
-                f"{place} is OUTPUT: choose another name", param_hint="--color-displacement"
+                f"{destination} is OUTPUT: choose another name", param_hint="--color-displacement"
             )
-        if as_json and place == STREAM and not dry_run:
+        if as_json and destination == STREAM and not dry_run:
             raise typer.BadParameter(
                 "standard output has the mesh already: name a file", param_hint="--json"
             )
@@ -202,9 +205,9 @@ def _command_with(table: type[Options], help_text: str) -> Command:
             writing_coloured(
                 None if dry_run else color_displacement, picture, overwrite, source
             ) as coloured,
-            as_files(source, place, ending) as (read, written),
+            as_files(source, destination, ending) as (read, written),
         ):
-            options = chosen_options(table, given, recipe)
+            options = chosen_options(table, explicit, recipe)
             part = region if region.given() else None
             if memory is not None:
                 if scheduler is not None:
@@ -216,7 +219,7 @@ def _command_with(table: type[Options], help_text: str) -> Command:
                     intent = intent_of_file(
                         read, written, options, on_progress, mesh, tiles, part, scheduler
                     )
-                print_intent(source, place, options, intent, as_json)
+                print_intent(source, destination, options, intent, as_json)
                 return
             if save_preset is not None:
                 save_recipe = preset_place(save_preset)
@@ -243,20 +246,20 @@ def _command_with(table: type[Options], help_text: str) -> Command:
                     write_comparison(change, coloured)
                     report["color_extent"] = change.color_extent
                 if picture is not None:
-                    draw_comparison(change, picture, (source.name, place.name))
+                    draw_comparison(change, picture, (source.name, destination.name))
         if save_recipe is not None and part is not None:
             names = ", ".join(f"--{name}" for name in part.given())
             print_warning(f"{save_recipe} does not hold {names}: a region is of one file")
-        warn_of_points_only(place.suffix)
+        warn_of_points_only(destination.suffix)
         for warning in report["warnings"]:
             print_warning(warning)
-        if place == STREAM:
+        if destination == STREAM:
             return
         if as_json:
             seconds = time.monotonic() - begin
-            typer.echo(json.dumps(_record(source, place, options, part, report, seconds)))
+            typer.echo(json.dumps(_record(source, destination, options, part, report, seconds)))
         else:
-            _print_reports(report, source.name, place.name)
+            _print_reports(report, source.name, destination.name)
             if color_displacement is not None:
                 extent = f"{report['color_extent']:.3g}"
                 print_result(f"{color_displacement}: red {extent} outwards, blue {extent} inwards")

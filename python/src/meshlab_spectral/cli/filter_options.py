@@ -113,9 +113,9 @@ _OBJECTS: dict[type[Any], str] = {Settings: "settings", Region: "region"}
 def with_options(
     *tables: type[Any], leave_out: Collection[str] = ()
 ) -> Callable[[Command], Command]:
-    """Add the fields of tables to a command as options, passed on as `given` and as objects.
+    """Add the fields of tables to a command as options, passed on as `explicit` and as objects.
 
-    `given` is a dict for `chosen_options`, with only the options set on the command line or by a
+    `explicit` is a dict for `chosen_options`, with only the options set on the command line or by a
     preset; `settings` is a `Settings` and `region` a `Region`, if these are among the tables.
 
     Parameters
@@ -154,7 +154,7 @@ def with_options(
                 except OptionError as error:
                     raise typer.BadParameter(f"--{error}") from error
             if values:
-                arguments["given"] = {
+                arguments["explicit"] = {
                     name: value
                     for name, value in values.items()
                     if source(name).name in ("COMMANDLINE", "DEFAULT_MAP")
@@ -162,7 +162,7 @@ def with_options(
             command(**arguments)
 
         context = ("context", typer.Context, None, None)
-        passed = {"given", *_OBJECTS.values()}
+        passed = {"explicit", *_OBJECTS.values()}
         return with_parameters(command, [context, *added.values()], run, passed)
 
     return decorate
@@ -196,29 +196,29 @@ def _completed(choices: Collection[str]) -> Callable[[str], list[str]]:
 
 
 def chosen_options(
-    table: type[AnyOptions], given: dict[str, Any], recipe: Path | None = None
+    table: type[AnyOptions], explicit: dict[str, Any], recipe: Path | None = None
 ) -> AnyOptions:
-    """Return the options of a recipe, if any, overridden by those given.
+    """Return the options of a recipe, if any, overridden by the explicit ones.
 
-    `table` is the class of the options, `given` comes from `with_options`. Raises OptionError when
+    `table` is the class of the options, `explicit` comes from `with_options`. Raises OptionError if
     a value is invalid, or an option or the recipe is for another filter, and InputError when the
     recipe cannot be read.
     """
     found, options = (table, {}) if recipe is None else load_recipe(recipe)
     if found is not table:
         raise OptionError(f"the recipe {recipe} is for {found.TABLE}, not for {table.TABLE}")
-    if "preset" in given and (of := preset_of(given["preset"])[0]) is not table:
+    if "preset" in explicit and (of := preset_of(explicit["preset"])[0]) is not table:
         hint = ": add --denoise" if of is DenoiseOptions and recipe is None else ""
-        raise OptionError(f"the preset {given['preset']} is for {of.TABLE}{hint}")
+        raise OptionError(f"the preset {explicit['preset']} is for {of.TABLE}{hint}")
     shortcuts = {"preset", "equalizer"}
     known = {one.name for one in fields(table)} | {"preset"}
     known |= shortcuts if table is FilterOptions else set()
-    for name in given:
+    for name in explicit:
         if name not in known:
             hint = ": add --denoise" if table is FilterOptions and recipe is None else ""
             spelled = name.replace("_", "-")
             raise OptionError(f"--{spelled} is not an option of {table.TABLE}{hint}")
-    values = {name: value for name, value in given.items() if name not in shortcuts}
+    values = {name: value for name, value in explicit.items() if name not in shortcuts}
     return table.from_dict({**options, **values})
 
 

@@ -20,7 +20,7 @@ from meshlab_spectral.filters.options import SpectrumOptions
 
 @with_options(SpectrumOptions, Settings, leave_out=("name", "ending", "joined", "script"))
 def spectra_command(
-    given: dict[str, Any],
+    explicit: dict[str, Any],
     settings: Settings,
     inputs: Inputs,
     output: Annotated[
@@ -43,7 +43,7 @@ def spectra_command(
     """
     with errors_reported(INTERRUPTED):
         with planning_shown(settings.resume):
-            batch = plan_spectra(inputs, output, SpectrumOptions.from_dict(given), settings)
+            batch = plan_spectra(inputs, output, SpectrumOptions.from_dict(explicit), settings)
         refuse_existing(output, settings.overwrite or settings.resume)
         remove_leftovers(resolved(output).parent, output.name)
         results: list[FileResult] = []

@@ -52,7 +52,7 @@ SHOWN_OPTIONS = tuple(TransferKeywords.__annotations__)
 
 @with_options(FilterOptions, leave_out=FilterKeywords.__annotations__.keys() - SHOWN_OPTIONS)
 def spectrum_command(
-    given: dict[str, Any],
+    explicit: dict[str, Any],
     source: Source,
     output: Annotated[
         Path | None,
@@ -90,7 +90,7 @@ def spectrum_command(
         output, overwrite = Path(f"{source.stem}_spectrum.png"), True
     begin = time.monotonic()
     with errors_reported(), contextlib.ExitStack() as stack:
-        options = chosen_options(FilterOptions, given, recipe)
+        options = chosen_options(FilterOptions, explicit, recipe)
         measured = SpectrumOptions(
             basis_size=basis_size, laplacian=options.laplacian, boundary=options.boundary
         )

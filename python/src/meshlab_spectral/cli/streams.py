@@ -38,13 +38,13 @@ def as_files(source: Path, target: Path, ending: str | None) -> Iterator[tuple[P
             source.parent.mkdir()
             with source.open("wb") as file:
                 shutil.copyfileobj(sys.stdin.buffer, file)
-        place = Path(folder, name) if target == STREAM else target
+        file_written = Path(folder, name) if target == STREAM else target
         try:
-            yield source, place
+            yield source, file_written
         except MeshFileError as error:
             named = str(error).replace(str(source), "standard input")
             raise MeshFileError(named, error.code) from error
-        if target == STREAM and place.exists():  # not in a dry run
-            with place.open("rb") as file:
+        if target == STREAM and file_written.exists():  # not in a dry run
+            with file_written.open("rb") as file:
                 shutil.copyfileobj(file, sys.stdout.buffer)
             sys.stdout.buffer.flush()

@@ -46,7 +46,7 @@ _COLUMNS = ("Sa", "Sq", "Sz", "Ssk", "Sku", "Sdq", "Sdr", "Sk", "Spk", "Svk")
 
 @with_options(TextureOptions, Region)
 def texture_command(
-    given: dict[str, Any],
+    explicit: dict[str, Any],
     region: Region,
     sources: Annotated[
         list[Path], typer.Argument(metavar="MESH", help="Meshes to read: .ply, .obj, .stl, ...")
@@ -101,7 +101,7 @@ def texture_command(
                 raise OptionError(
                     f"{table} exists: choose another name, or replace it with --overwrite"
                 )
-        options = chosen_options(TextureOptions, given)
+        options = chosen_options(TextureOptions, explicit)
         measured: list[tuple[Path, SurfaceTexture]] = []
         failed = 0
         for source in sources:
@@ -117,7 +117,7 @@ def texture_command(
                     )
             except SpectralError as error:
                 if not many:
-                    if isinstance(error, OptionError) and not given and region == Region():
+                    if isinstance(error, OptionError) and not explicit and region == Region():
                         raise MeshError(str(error)) from error  # the mesh's: no option was given
                     raise
                 print_error(f"{source}: {error}")
@@ -135,8 +135,8 @@ def texture_command(
             with writing_whole(table) as rows:
                 _write_table(records, rows)
     if as_json:
-        whole = {"files": records} if many else records[0]
-        typer.echo(json.dumps({**whole, "versions": versions()}))
+        printed = {"files": records} if many else records[0]
+        typer.echo(json.dumps({**printed, "versions": versions()}))
     elif many:
         print_result(_table_of_many(records))
     else:

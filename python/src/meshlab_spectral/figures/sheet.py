@@ -162,11 +162,11 @@ class Sheet:
         return self._height - sum(self._heights[:rows]) - row * self._label - rows * _GAP
 
     def _axes(self, left: float, bottom: float, width: float, height: float) -> Axes:
-        place = (
+        rectangle = (
             left / self._width,
             bottom / self._height,
             width / self._width,
             height / self._height,
         )
-        axes: Axes = self.figure.add_axes(place)
+        axes: Axes = self.figure.add_axes(rectangle)
         return axes

@@ -106,21 +106,21 @@ def chosen_vertices(selection: ArrayLike, count: int, F: NDArray[np.integer]) ->
     `selection` is one boolean per vertex, or indices of faces in `F`, m x 3, which select their
     corners. Raises ArrayError when it is neither, or an index is out of range.
     """
-    given = np.asarray(selection)
-    if given.dtype == bool and given.shape == (count,):
-        return given
+    array = np.asarray(selection)
+    if array.dtype == bool and array.shape == (count,):
+        return array
     chosen = np.zeros(count, dtype=bool)
-    if given.size == 0:
+    if array.size == 0:
         return chosen
-    if given.ndim != 1 or not np.issubdtype(given.dtype, np.integer):
+    if array.ndim != 1 or not np.issubdtype(array.dtype, np.integer):
         raise ArrayError(
-            f"selection has shape {given.shape} and type {given.dtype}: pass {count} booleans, one "
+            f"selection has shape {array.shape} and type {array.dtype}: pass {count} booleans, one "
             "for each vertex, or indices of faces (of a mask: numpy.flatnonzero(mask))"
         )
-    if given.min() < 0 or given.max() >= len(F):
-        wrong = given.min() if given.min() < 0 else given.max()
+    if array.min() < 0 or array.max() >= len(F):
+        wrong = array.min() if array.min() < 0 else array.max()
         raise ArrayError(f"selection has face {wrong}, but there are {len(F)} faces")
-    chosen[F[given]] = True
+    chosen[F[array]] = True
     return chosen
 
 

@@ -104,8 +104,8 @@ def measure_artefacts(
     V, F = mesh_arrays(vertices, faces)
     if feature_size == "auto":
         raise OptionError("feature_size = auto: give the size that was filtered with")
-    given = {"feature_size": feature_size, "laplacian": laplacian}
-    done = run(_FILTER_NAME, V, F, given, progress=progress, threads=threads)
+    parameters = {"feature_size": feature_size, "laplacian": laplacian}
+    done = run(_FILTER_NAME, V, F, parameters, progress=progress, threads=threads)
     assert done.values is not None
     return Artefacts(
         rms=done.report["rms"],

@@ -12,7 +12,7 @@ from meshlab_spectral.filters.mesh_objects import takes_mesh_alone
 from meshlab_spectral.filters.options import DenoiseKeywords, DenoiseOptions
 from meshlab_spectral.filters.progress import Progress
 from meshlab_spectral.filters.reports import DenoiseReport
-from meshlab_spectral.filters.shapes import filtered
+from meshlab_spectral.filters.shapes import filter_shape
 
 if TYPE_CHECKING:
     from typing_extensions import Unpack
@@ -116,10 +116,10 @@ def denoise_mesh(
     >>> V, report = denoise_mesh(vertices, faces)
     >>> print(report["summary"])
     """
-    moved, report = filtered(
+    moved, report = filter_shape(
         mesh_or_vertices,
         faces,
-        DenoiseOptions.given(options, named),
+        DenoiseOptions.from_call(options, named),
         weights=weights,
         selection=selection,
         progress=progress,

@@ -13,7 +13,7 @@ from meshlab_spectral.filters.options import FilterKeywords, FilterOptions, Shap
 from meshlab_spectral.filters.progress import Progress
 from meshlab_spectral.filters.reports import FilterReport
 from meshlab_spectral.filters.running import Gain, require_no_type
-from meshlab_spectral.filters.shapes import filtered
+from meshlab_spectral.filters.shapes import filter_shape
 
 if TYPE_CHECKING:
     from typing_extensions import Unpack
@@ -141,10 +141,10 @@ def filter_mesh(
     >>> report["max_displacement"]
     >>> smooth, report = filter_mesh(pyvista.read("scan.ply"), gain=lambda w: 1 / (1 + w**4))
     """
-    parameters = FilterOptions.given(options, named)
+    parameters = FilterOptions.from_call(options, named)
     if gain is not None:
         require_no_type(parameters.filter_type)
-    moved, report = filtered(
+    moved, report = filter_shape(
         mesh_or_vertices,
         faces,
         parameters,

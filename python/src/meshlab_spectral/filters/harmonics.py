@@ -436,8 +436,8 @@ def compute(
     threads: int | None = None,
 ) -> Harmonics:
     """Compute the harmonics of validated arrays."""
-    given = {"mode": 0, **options.core_parameters()}  # mode 0 is in every basis
-    done = run(options.FILTER, V, F, given, progress=progress, threads=threads)
+    parameters = {"mode": 0, **options.core_parameters()}  # mode 0 is in every basis
+    done = run(options.FILTER, V, F, parameters, progress=progress, threads=threads)
     Phi = done.basis
     assert Phi is not None
     masses = _equal_areas(V, F, Phi) if options.laplacian == "uniform" else lumped_areas(V, F)

@@ -12,7 +12,7 @@ from meshlab_spectral.errors import OptionError
 from meshlab_spectral.extras import check_extras
 from meshlab_spectral.filters.arrays import mesh_arrays
 from meshlab_spectral.filters.options import LaplacianKind
-from meshlab_spectral.filters.progress import Progress, shown
+from meshlab_spectral.filters.progress import Progress, progress_callback
 from meshlab_spectral.filters.running import thread_count
 
 if TYPE_CHECKING:
@@ -77,7 +77,7 @@ def laplacian(
     if kind not in kinds:
         raise OptionError(f"kind = {kind}: choose {', '.join(kinds)}")
     V, F = mesh_arrays(mesh_or_vertices, faces)
-    with shown(progress) as on_progress:
+    with progress_callback(progress) as on_progress:
         data, columns, offsets, masses, vertex = _core.laplacian(
             V, F, kinds.index(kind), progress=on_progress, threads=thread_count(threads)
         )

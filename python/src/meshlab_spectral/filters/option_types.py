@@ -225,7 +225,7 @@ class Options:
         return cls(**plain)
 
     @classmethod
-    def given(
+    def from_call(
         cls: type[AnyOptions], options: AnyOptions | None, named: Mapping[str, object]
     ) -> AnyOptions:
         """Return the options of a call, given as one object or by name.

@@ -21,7 +21,7 @@ SECONDS_BETWEEN = 5.0
 
 
 @contextlib.contextmanager
-def shown(progress: Progress | bool | None) -> Iterator[Progress | None]:
+def progress_callback(progress: Progress | bool | None) -> Iterator[Progress | None]:
     """Yield what the core calls: `progress` itself, or what shows it if that is True.
 
     Without rich, which only the command needs, a terminal gets lines, too.
@@ -107,10 +107,10 @@ def _notebook_bar() -> Iterator[Update]:
         seconds = time.monotonic() - begin
         return HTML(f"<progress max='1'{value}></progress> {stage}, {seconds:.1f} s")
 
-    place = display(bar("starting", None), display_id=True)
+    handle = display(bar("starting", None), display_id=True)
     try:
-        yield lambda stage, fraction: place.update(bar(stage, fraction))
+        yield lambda stage, fraction: handle.update(bar(stage, fraction))
     except BaseException:
-        place.update(bar("stopped", 0.0))
+        handle.update(bar("stopped", 0.0))
         raise
-    place.update(bar("done", 1.0))
+    handle.update(bar("done", 1.0))

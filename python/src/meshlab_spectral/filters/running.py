@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 from meshlab_spectral import _core
 from meshlab_spectral.errors import OptionError
 from meshlab_spectral.filters.arrays import real_numbers
-from meshlab_spectral.filters.progress import Progress, shown
+from meshlab_spectral.filters.progress import Progress, progress_callback
 from meshlab_spectral.filters.representations import Report
 from meshlab_spectral.plugin import limits
 from meshlab_spectral.warned import Warned, with_warnings
@@ -123,7 +123,7 @@ def run(
         On Ctrl-C, within 0.5 s.
     """
     _core.set_memory_limit(limits.given_memory_limit() or 0)
-    with shown(progress) as on_progress:
+    with progress_callback(progress) as on_progress:
         result = _core.apply(
             name,
             V,

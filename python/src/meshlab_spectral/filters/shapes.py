@@ -15,7 +15,7 @@ from meshlab_spectral.filters.running import Gain, run
 from meshlab_spectral.plugin.mesh_sets import written_copy
 
 
-def filtered(
+def filter_shape(
     mesh_or_vertices: Any,
     faces: ArrayLike | None,
     options: Options,
@@ -50,8 +50,8 @@ def filtered(
     values = selected = None
     part: dict[str, Any] = {}
     if weights is not None:
-        given = array_of(mesh_or_vertices, weights, "weights")
-        values = vertex_numbers(given, len(V), "weights")[:, None]
+        array = array_of(mesh_or_vertices, weights, "weights")
+        values = vertex_numbers(array, len(V), "weights")[:, None]
         part["weight"] = "vertex quality"
     elif getattr(options, "weight", "none") != "none":
         raise OptionError("weight = vertex quality: pass the quality as weights")

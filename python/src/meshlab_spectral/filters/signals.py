@@ -14,7 +14,7 @@ from meshlab_spectral.filters.arrays import mesh_arrays, real_numbers
 from meshlab_spectral.filters.keywords import takes_options
 from meshlab_spectral.filters.mesh_objects import array_of, takes_mesh_alone
 from meshlab_spectral.filters.options import FilterOptions, TransferKeywords
-from meshlab_spectral.filters.progress import Progress, shown
+from meshlab_spectral.filters.progress import Progress, progress_callback
 from meshlab_spectral.filters.reports import ColorsReport, ScalarsReport
 from meshlab_spectral.filters.representations import Report
 from meshlab_spectral.filters.running import Gain, Run, plain, require_no_type, run
@@ -131,7 +131,7 @@ def filter_scalars(
     fields = Q.reshape(len(V), -1)
     filtered = np.empty_like(fields)
     reports: list[dict[str, Any]] = [{}] * fields.shape[1]
-    with shown(progress) as on_progress:
+    with progress_callback(progress) as on_progress:
         for block in _filtered_together(fields):
             done = _run(_SCALARS, V, F, parameters, fields[:, block], gain, on_progress, threads)
             filtered[:, block] = _values(done)
@@ -244,7 +244,7 @@ def _options_for(options: FilterOptions | None, named: Any, gain: Gain | None) -
                 f"{name}: not for values on a fixed shape; choose "
                 f"{', '.join(TransferKeywords.__annotations__)}"
             )
-    parameters = FilterOptions.given(options, named)
+    parameters = FilterOptions.from_call(options, named)
     if gain is not None:
         require_no_type(parameters.filter_type)
     return parameters
@@ -261,12 +261,14 @@ def _run(
     threads: int | None,
 ) -> Run:
     """Filter values, n x c, with the options that a signal has."""
-    given = {
+    core_parameters = {
         name: value
         for name, value in options.core_parameters().items()
         if name in TransferKeywords.__annotations__
     }
-    return run(name, V, F, given, values=values, gain=gain, progress=progress, threads=threads)
+    return run(
+        name, V, F, core_parameters, values=values, gain=gain, progress=progress, threads=threads
+    )
 
 
 def _values(done: Run) -> NDArray[np.float64]:

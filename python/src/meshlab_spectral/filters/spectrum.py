@@ -210,5 +210,5 @@ def measure(
     threads: int | None = None,
 ) -> dict[str, Any]:
     """Run the filter on validated arrays and return its report."""
-    given = options.core_parameters()
-    return run(options.FILTER, V, F, given, progress=progress, threads=threads).report
+    parameters = options.core_parameters()
+    return run(options.FILTER, V, F, parameters, progress=progress, threads=threads).report

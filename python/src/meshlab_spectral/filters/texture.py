@@ -217,7 +217,7 @@ def surface_texture(
     >>> bore = surface_texture(vertices, faces, form="cylinder", selection=faces_of_the_bore)
     """
     V, F = mesh_arrays(mesh_or_vertices, faces)
-    parameters = TextureOptions.given(options, _by_our_names(named))
+    parameters = TextureOptions.from_call(options, _by_our_names(named))
     part: dict[str, Any] = {}
     selected = None
     if selection is not None:

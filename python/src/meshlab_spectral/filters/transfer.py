@@ -66,9 +66,11 @@ def gain(options: FilterOptions, x: Array, lengths: MeshLengths | None = None) -
                 "a custom transfer function needs the lengths of a mesh for its sizes"
             )
         lengths = MeshLengths(1.0, 1.0, 1.0)
-    given = {
+    parameters = {
         name: value for name, value in options.core_parameters().items() if name in TRANSFER_NAMES
     }
     w = np.ascontiguousarray(real_numbers(x, "x"))
-    gains = _core.gains(given, lengths.feature_size, lengths.diagonal, lengths.mean_edge, w.ravel())
+    gains = _core.gains(
+        parameters, lengths.feature_size, lengths.diagonal, lengths.mean_edge, w.ravel()
+    )
     return gains.reshape(w.shape)

@@ -14,7 +14,7 @@ from meshlab_spectral.filters.options import (
     FilterKeywords,
     FilterOptions,
 )
-from meshlab_spectral.filters.progress import Progress, shown
+from meshlab_spectral.filters.progress import Progress, progress_callback
 from meshlab_spectral.filters.reports import DenoiseReport, FilterReport
 from meshlab_spectral.tiles import whole_or_tiles
 
@@ -68,7 +68,7 @@ def filter_file(
     --------
     >>> report = filter_file("scan.ply", "smooth.ply", feature_size="2%")
     """
-    chosen = FilterOptions.given(options, named)
+    chosen = FilterOptions.from_call(options, named)
     return cast(FilterReport, _filtered(source, target, chosen, mesh, overwrite, progress))
 
 
@@ -102,7 +102,7 @@ def denoise_file(
     --------
     >>> print(denoise_file("scan.ply", "clean.ply")["summary"])
     """
-    chosen = DenoiseOptions.given(options, named)
+    chosen = DenoiseOptions.from_call(options, named)
     return cast(DenoiseReport, _filtered(source, target, chosen, mesh, overwrite, progress))
 
 
@@ -119,7 +119,7 @@ def _filtered(
         raise InputError(f"{target} is the input itself and would be lost: choose another name")
     if written.is_file() and not overwrite:
         raise InputError(f"{target} exists: choose another name, or replace it by overwrite=True")
-    with shown(progress) as on_progress:
+    with progress_callback(progress) as on_progress:
 
         def update(stage: str, fraction: float | None) -> None:
             # A stage of unknown length is at its beginning.
