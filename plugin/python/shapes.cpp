@@ -141,16 +141,21 @@ Table3 followingNormals(const Rows<double>& before, const Rows<double>& after,
     return result;
 }
 
-Table3 followingFacetNormals(const Rows<double>& before, const Rows<double>& after,
-                             const Rows<std::int64_t>& F, const Rows<double>& N) {
-    Table3 result = N;
+Table3 followingFaceNormals(const Rows<double>& before, const Rows<double>& after,
+                            const Rows<std::int64_t>& F, const Rows<double>& N,
+                            const std::int64_t* owners) {
+    Table3 old = Table3::Zero(N.rows(), 3), sums = old, result = N;
+    std::vector<bool> hasMoved(N.rows(), false);
     for (Eigen::Index f = 0; f < F.rows(); ++f) {
         const Triangle was = triangleOf(before, F.data() + 3 * f);
         const Triangle is = triangleOf(after, F.data() + 3 * f);
-        const Vector normal = areaVector(is);
-        if (is != was && normal.norm() > 0.0 && (N.row(f).array() != 0.0).any())
-            result.row(f) = turned(normal, N.row(f), areaVector(was));
+        old.row(owners[f]) += areaVector(was);
+        sums.row(owners[f]) += areaVector(is);
+        if (is != was) hasMoved[owners[f]] = true;
     }
+    for (Eigen::Index i = 0; i < N.rows(); ++i)
+        if (hasMoved[i] && sums.row(i).norm() > 0.0 && (N.row(i).array() != 0.0).any())
+            result.row(i) = turned(sums.row(i), N.row(i), old.row(i));
     return result;
 }
 

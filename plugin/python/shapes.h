@@ -33,8 +33,11 @@ Table3 followingNormals(const Rows<double>& before, const Rows<double>& after,
                         const Rows<std::int64_t>& F, const Rows<double>& N,
                         const Rows<std::int64_t>& which);
 
-/// The same for m normals of the triangles themselves; one that is zero is kept, too.
-Table3 followingFacetNormals(const Rows<double>& before, const Rows<double>& after,
-                             const Rows<std::int64_t>& F, const Rows<double>& N);
+/// The same for k normals of faces, of one or several triangles; one that is zero is kept, too.
+///
+/// @param owners  m numbers of the triangles' faces, rows of N.
+Table3 followingFaceNormals(const Rows<double>& before, const Rows<double>& after,
+                            const Rows<std::int64_t>& F, const Rows<double>& N,
+                            const std::int64_t* owners);
 
 }  // namespace spectral::python

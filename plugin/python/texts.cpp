@@ -150,10 +150,11 @@ nb::object normals(const Positions& before, const Positions& after, const IndexT
     return givenByRows(result);
 }
 
-nb::object facetNormals(const Positions& before, const Positions& after, const IndexTable& faces,
-                        const Positions& given) {
+nb::object faceNormals(const Positions& before, const Positions& after, const IndexTable& faces,
+                       const Positions& given, const Places& owners) {
     Table3 result = released([&] {
-        return followingFacetNormals(rowsOf(before), rowsOf(after), rowsOf(faces), rowsOf(given));
+        return followingFaceNormals(rowsOf(before), rowsOf(after), rowsOf(faces), rowsOf(given),
+                                    owners.data());
     });
     return givenByRows(result);
 }
@@ -171,7 +172,8 @@ void addTexts(nb::module_& m) {
     m.def("write_patched", writePatched, "text"_a, "begin"_a, "changes"_a, "write"_a);
     m.def("first_equal_rows", firstRows, "rows"_a);
     m.def("following_normals", normals, "before"_a, "after"_a, "faces"_a, "normals"_a, "which"_a);
-    m.def("following_facet_normals", facetNormals, "before"_a, "after"_a, "faces"_a, "normals"_a);
+    m.def("following_face_normals", faceNormals, "before"_a, "after"_a, "faces"_a, "normals"_a,
+          "owners"_a);
     m.def("xml_elements", elements, "text"_a, "kinds"_a);
 }
 

@@ -97,11 +97,12 @@ def following_normals(
     normals: NDArray[np.float64],
     which: NDArray[np.int64],
 ) -> NDArray[np.float64]: ...
-def following_facet_normals(
+def following_face_normals(
     before: NDArray[np.float64],
     after: NDArray[np.float64],
     faces: NDArray[np.int64],
     normals: NDArray[np.float64],
+    owners: NDArray[np.int64],
 ) -> NDArray[np.float64]: ...
 def components(vertices: NDArray[np.float64], faces: NDArray[np.int32]) -> NDArray[np.int32]: ...
 def moved_alike(

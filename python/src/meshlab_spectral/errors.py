@@ -44,6 +44,10 @@ class ArgumentError(SpectralError, TypeError):
     """An argument is missing, or an object of the wrong kind, such as one that is no mesh."""
 
 
+class UntiledError(MeshFileError):
+    """A file or a filter cannot be handled in tiles; the message says why, and what to do."""
+
+
 class FilterError(SpectralError):
     """The filter rejected a mesh or an option, or failed.
 

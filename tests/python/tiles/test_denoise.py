@@ -7,11 +7,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 from meshlab_spectral import DenoiseOptions
+from meshlab_spectral.errors import UntiledError
 from meshlab_spectral.files.meshes import filter_to_scratch
 from meshlab_spectral.formats import ply
-from meshlab_spectral.tiles.bounds import UntiledError
+from meshlab_spectral.formats.opening import open_rows
 from meshlab_spectral.tiles.cells import near_cells, split
-from meshlab_spectral.tiles.rows import open_rows
 from meshlab_spectral.tiles.run import filter_in_tiles
 from meshlab_spectral.tiles.survey import survey
 from tiled_meshes import Array, Indices, bumpy_torus, write_ply

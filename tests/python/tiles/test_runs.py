@@ -20,9 +20,8 @@ import numpy as np
 import pytest
 from commands import command
 from meshlab_spectral import FilterOptions, MemoryLimitError, MeshFileError
-from meshlab_spectral.errors import FilterError, OptionError, ProcessDiedError
+from meshlab_spectral.errors import FilterError, OptionError, ProcessDiedError, UntiledError
 from meshlab_spectral.tiles import whole_or_tiles
-from meshlab_spectral.tiles.bounds import UntiledError
 from meshlab_spectral.tiles.halo import kernel_tails, reach_of
 from meshlab_spectral.tiles.plan import Workspace
 from meshlab_spectral.tiles.run import filter_in_tiles
@@ -83,7 +82,7 @@ def test_a_filter_that_is_not_local_is_refused_with_the_reason(
 def test_a_halo_that_does_not_fit_is_refused(
     source: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("meshlab_spectral.tiles.run.workers", lambda: (1, 152 * 2**20))
+    monkeypatch.setattr("meshlab_spectral.tiles.run.workers_for_tiles", lambda: (1, 152 * 2**20))
     wide = FilterOptions(feature_size="30%", response="butterworth")
     for tiles in (0, 8):
         with pytest.raises(UntiledError, match=r"reaches .* far"):

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Generator, Mapping, Sequence
-from contextlib import AbstractContextManager, closing
+from contextlib import closing
 from dataclasses import fields
 from datetime import datetime, timezone
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from meshlab_spectral.batch import storage
-from meshlab_spectral.batch.jobs import FileResult, Job
+from meshlab_spectral.batch.jobs import FileResult
 from meshlab_spectral.batch.plan import Batch, plan_batch
 from meshlab_spectral.batch.report import Report, Tally
 from meshlab_spectral.batch.settings import BatchKeywords, DenoiseBatchKeywords, Settings
@@ -19,7 +19,6 @@ from meshlab_spectral.extras import check_extras
 from meshlab_spectral.filters.keywords import takes_options
 from meshlab_spectral.filters.option_types import AnyOptions
 from meshlab_spectral.filters.options import DenoiseOptions, FilterOptions
-from meshlab_spectral.workers.pool import Workers, run_jobs
 
 if TYPE_CHECKING:
     from typing_extensions import Unpack
@@ -147,32 +146,23 @@ def run_batch(batch: Batch, tally: Tally) -> Generator[FileResult, None, None]:
 def _results(
     batch: Batch, record: Callable[[FileResult], None]
 ) -> Generator[FileResult, None, None]:
-    if not batch.settings.joined:
+    # Slow imports, not needed by commands for a single file.
+    from meshlab_spectral.batch.task import run_job, run_together
+    from meshlab_spectral.workers.local import open_workers
+
+    settings = batch.settings
+    if not settings.joined:
         with (
-            _workers(batch.settings) as workers,
-            closing(run_jobs(workers, batch.jobs, record)) as results,
+            open_workers(
+                run_job, settings.scheduler, settings.workers, settings.memory_limit
+            ) as workers,
+            closing(workers.run(batch.jobs, record)) as results,
         ):
             yield from results
         return
-    from meshlab_spectral.batch.joined import run_joined
-    from meshlab_spectral.workers.local import local_workers
-
     with (
-        local_workers(run_joined, 1, batch.settings.memory_limit) as one,
-        closing(run_jobs(one, [batch.jobs], lambda done: [*map(record, done)])) as all_results,
+        open_workers(run_together, count=1, memory_limit=settings.memory_limit) as one,
+        closing(one.run([batch.jobs], lambda done: [*map(record, done)])) as all_results,
     ):
         for together in all_results:
             yield from together
-
-
-def _workers(settings: Settings) -> AbstractContextManager[Workers[Job, FileResult]]:
-    # Slow imports, not needed by commands for a single file.
-    from meshlab_spectral.batch.task import run_job
-
-    if settings.scheduler is not None:
-        from meshlab_spectral.workers.cluster import workers_at
-
-        return workers_at(settings.scheduler, run_job)
-    from meshlab_spectral.workers.local import local_workers
-
-    return local_workers(run_job, settings.workers, settings.memory_limit)

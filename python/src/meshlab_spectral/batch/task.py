@@ -1,8 +1,10 @@
-"""Processing of one file in a worker; every error becomes a result."""
+"""Processing of a file, or of several that are one surface, in a worker: errors become results."""
 
 from __future__ import annotations
 
+import contextlib
 import time
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -25,45 +27,58 @@ def run_job(processes: Processes, job: Job) -> FileResult:
     Errors with a single file are not raised. Raises BatchError when no process starts, and
     ProcessesEndedError when the processes are ended meanwhile.
     """
+    (result,) = run_together(processes, [job])
+    return result
+
+
+def run_together(processes: Processes, jobs: Sequence[Job]) -> list[FileResult]:
+    """Process files that are one surface, as `run_job` does one; if one fails, all do."""
     begin = time.monotonic()
-    result: dict[str, Any] = {"outcome": "failed", "waited": 0.0}
+    common: dict[str, Any] = {"waited": 0.0}
+    own: list[dict[str, Any]] = [{"outcome": "failed"} for _ in jobs]
     try:
-        with storage.reading(job.source, processes.folder) as source:
-            # Hashed before MeshLab reads it: a file changed meanwhile does not count as done.
-            result["input_sha256"] = storage.digest(source)
-            work = job.work | {"source": str(source), "verbose": False}
-            if job.target is None:
-                answer = processes.run(work, job.seconds, result)
-            else:
-                with storage.writing(job.target, job.overwrite, processes.folder) as scratch:
-                    work["scratch"] = str(scratch)
-                    answer = processes.run(work, job.seconds, result)
-                    written = digests(scratch)
-                result |= written
-        result["outcome"] = _outcome(job, answer.report)
-        result |= {"report": answer.report, "peak_memory": answer.peak_memory}
-        result |= with_warnings({}, _warnings(answer.report))
+        with contextlib.ExitStack() as stack:
+            folder = processes.folder
+            sources = [stack.enter_context(storage.reading(job.source, folder)) for job in jobs]
+            # Hashed before MeshLab reads them: a file changed meanwhile does not count as done.
+            for one, source in zip(own, sources, strict=True):
+                one["input_sha256"] = storage.digest(source)
+            scratches = [
+                stack.enter_context(storage.writing(job.target, job.overwrite, folder))
+                for job in jobs
+                if job.target is not None
+            ]
+            places = {"sources": [*map(str, sources)], "scratches": [*map(str, scratches)]}
+            first = {"source": str(sources[0]), "scratch": str(scratches[0]) if scratches else None}
+            work = {**jobs[0].work, **places, **first, "verbose": False}
+            answer = processes.run(work, jobs[0].seconds, common)
+            written = [digests(scratch) for scratch in scratches] or [{}]
+        report = answer.report
+        largest = report.pop("largest", [report.get("max_displacement")])
+        for one, digest, moved in zip(own, written, largest, strict=True):
+            one |= digest | {"outcome": _outcome(jobs[0], moved)}
+        common |= {"report": report, "peak_memory": answer.peak_memory}
+        own[0] |= with_warnings({}, _warnings(report))  # once, not for every file
     except ProcessesEndedError:
         raise
     except ProcessStartError as error:
         raise BatchError(f"{error}; then run the same command with --resume") from error
     except SpectralError as error:
-        result["reason"] = str(error)
+        common["reason"] = str(error)
     except OSError as error:
-        result["reason"] = file_trouble(error) if error.strerror else f"a file's trouble: {error}"
+        common["reason"] = file_trouble(error) if error.strerror else f"a file's trouble: {error}"
     except Exception as error:
-        result["reason"] = f"unexpected error: {error!r}; please report it"
-    return job.result(
-        seconds=round(time.monotonic() - begin - result.pop("waited"), 3),
-        versions=versions(),
-        **result,
-    )
+        common["reason"] = f"unexpected error: {error!r}; please report it"
+    common["seconds"] = round(time.monotonic() - begin - common.pop("waited"), 3)
+    return [
+        job.result(versions=versions(), **common, **one) for job, one in zip(jobs, own, strict=True)
+    ]
 
 
-def _outcome(job: Job, report: dict[str, Any]) -> Outcome:
+def _outcome(job: Job, moved: float | None) -> Outcome:
     if job.target is None:
         return "measured"
-    return "unchanged" if report.get("max_displacement") == 0 else "filtered"
+    return "unchanged" if moved == 0 else "filtered"
 
 
 def _warnings(report: dict[str, Any]) -> list[Warned]:

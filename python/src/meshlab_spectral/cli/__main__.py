@@ -28,7 +28,7 @@ def main() -> None:
     end_at_once()
     buffer_output()
     os.environ["MESHLAB_SPECTRAL_SHELL"] = "1"  # `SHELL` of filters/running.py, a slow import
-    from meshlab_spectral.workers.ahead import end_unused, start_ahead
+    from meshlab_spectral.workers.process import end_unused, start_ahead
 
     if sys.argv[1:2] and sys.argv[1] in _OF_ONE_FILE and not {"-h", "--help"} & set(sys.argv):
         start_ahead()

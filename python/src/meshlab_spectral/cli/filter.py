@@ -44,7 +44,7 @@ from meshlab_spectral.filters.option_types import Options
 from meshlab_spectral.filters.options import DenoiseOptions, FilterOptions
 from meshlab_spectral.plugin.limits import name_memory_limit, set_memory_limit
 from meshlab_spectral.plugin.versions import versions
-from meshlab_spectral.tiles.bounds import MOST_TILES
+from meshlab_spectral.tiles import MOST_TILES
 from meshlab_spectral.tiles.whole_or_tiles import filter_file, intent_of_file
 from meshlab_spectral.workers.single_file import compare_in_child
 

@@ -6,11 +6,12 @@ from pathlib import Path
 
 from meshlab_spectral.errors import FormatError
 from meshlab_spectral.formats.names import FREE_SURFER, FREE_SURFER_ENDINGS, ending_of
-from meshlab_spectral.formats.opening import INSTRUMENTS, PATCHED, TERRAINS, format_of
+from meshlab_spectral.formats.opening import PATCHED, READ_ONLY, format_of
+from meshlab_spectral.formats.table import TERRAINS
 
 _BOTH = {"3ds", "3mf", "ctm", "dae", "e57", "obj", "off", "ply", "stl", "wrl", "x3d", "xyz"}
-_READ_ONLY = {"apts", "asc", "bre", "fbx", "glb", "gltf", "pdb", "pts", "ptx", "qobj", "tri"}
-READABLE = frozenset(_BOTH | _READ_ONLY | {"txt", "vmi", "x3dv"} | PATCHED | INSTRUMENTS | TERRAINS)
+_BY_MESHLAB = {"apts", "asc", "bre", "fbx", "glb", "gltf", "pdb", "pts", "ptx", "qobj", "tri"}
+READABLE = frozenset(_BOTH | _BY_MESHLAB | {"txt", "vmi", "x3dv"} | PATCHED | READ_ONLY)
 WRITABLE = frozenset(_BOTH | {"dxf", "idtf", "json", "nxs", "nxz"})
 # MeshLab drops the faces in these without an error.
 POINTS_ONLY = frozenset({"e57", "xyz"})
@@ -33,7 +34,7 @@ def is_same_format(source: Path, target: Path) -> bool:
     if ending in _GIFTI:
         return given in _GIFTI
     own = ending or ending_of(source.name).lower()
-    return own == given and given not in INSTRUMENTS | TERRAINS
+    return own == given and given not in READ_ONLY
 
 
 def check_ending(path: Path, what: str, *endings: str) -> None:

@@ -15,7 +15,6 @@ import zlib
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from shutil import copyfile
 from typing import Any
 
 import numpy as np
@@ -34,7 +33,7 @@ from meshlab_spectral.formats.names import (
     shown,
 )
 from meshlab_spectral.formats.normals import are_normals, following_normals
-from meshlab_spectral.formats.side_files import beside, copy_side_files
+from meshlab_spectral.formats.side_files import beside
 from meshlab_spectral.formats.text import numbers_from
 from meshlab_spectral.warned import Warned
 
@@ -73,14 +72,12 @@ def read(path: Path) -> Document:
 
 @dataclass(kw_only=True)
 class _FreeSurfer(Document):
-    begin: int  # byte offset of the coordinates
+    head: bytes  # up to the coordinates
+    tail: bytes  # behind them
 
-    def save(self, target: Path, moved: Sequence[Array]) -> list[Warned]:
+    def write(self, target: Path, moved: Sequence[Array]) -> list[Warned]:
         before, after = self.parts[0].vertices, moved[0]
-        copyfile(self.path, target)
-        with target.open("r+b") as file:
-            file.seek(self.begin)
-            file.write(after.astype(">f4").tobytes())
+        target.write_bytes(self.head + after.astype(">f4").tobytes() + self.tail)
         return precision_warnings(before, after, target.name)
 
 
@@ -99,22 +96,12 @@ def _read_free_surfer(path: Path) -> Document:
     faces = np.frombuffer(data, ">i4", 3 * m, begin + 12 * n).reshape(-1, 3).astype(np.int64)
     contents = ["volume geometry"] if tail < len(data) else []
     return _FreeSurfer(
-        path=path, parts=[checked_part(path, vertices, faces)], contents=contents, begin=begin
+        path=path,
+        parts=[checked_part(path, vertices, faces)],
+        contents=contents,
+        head=data[:begin],
+        tail=data[begin + 12 * n :],
     )
-
-
-@dataclass(kw_only=True)
-class _Quadrilaterals(Document):
-    counts: bytes
-    tail: bytes  # the quadrilaterals, and what follows them
-
-    def save(self, target: Path, moved: Sequence[Array]) -> list[Warned]:
-        before, after = self.parts[0].vertices, moved[0]
-        if (after == before).all():
-            copyfile(self.path, target)
-            return []
-        target.write_bytes(QUADRILATERALS + self.counts + after.astype(">f4").tobytes() + self.tail)
-        return precision_warnings(before, after, target.name)
 
 
 def _read_quadrilaterals(path: Path) -> Document:
@@ -137,11 +124,11 @@ def _read_quadrilaterals(path: Path) -> Document:
     a, b, c, d = (bytes_ @ [65536, 256, 1]).T
     is_even = a % 2 == 0  # FreeSurfer's choice of the diagonal
     halves = np.where(is_even, [a, b, d, c, d, b], [a, b, c, a, c, d])
-    return _Quadrilaterals(
+    return _FreeSurfer(
         path=path,
         parts=[checked_part(path, vertices, halves.T.reshape(-1, 3))],
         contents=["polygons"],
-        counts=data[3:begin],
+        head=QUADRILATERALS + data[3:begin],
         tail=data[middle:],
     )
 
@@ -152,12 +139,15 @@ class _Gifti(Document):
     points: Any  # its GiftiDataArray with the coordinates
     vectors: list[Any]  # its arrays of normals
 
-    def save(self, target: Path, moved: Sequence[Array]) -> list[Warned]:
-        (part,), (after,) = self.parts, moved
-        external = {array.ext_fname for array in self.image.darrays if array.encoding == _EXTERNAL}
-        if (after == part.vertices).all():
-            copyfile(self.path, target)
-            return copy_side_files(self.path, target, sorted(external))
+    def side_files(self) -> list[str]:
+        arrays = self.image.darrays
+        return sorted({array.ext_fname for array in arrays if array.encoding == _EXTERNAL})
+
+    def keeps(self, target: Path) -> bool:
+        return _is_packed(target) == _is_packed(self.path)
+
+    def write(self, target: Path, moved: Sequence[Array]) -> list[Warned]:
+        (part,), (after,), external = self.parts, moved, self.side_files()
         for array in self.vectors:
             normals = array.data.astype(np.float64)
             new = following_normals(part.vertices, after, part.faces, normals)
@@ -169,13 +159,16 @@ class _Gifti(Document):
             ):
                 array.encoding, array.ext_fname, array.ext_offset = _BINARY, "", 0
         content = self.image.to_bytes(mode="force")  # force: doubles are allowed, too
-        is_packed = target.suffix.lower() == ".gz"
-        target.write_bytes(gzip.compress(content, mtime=0) if is_packed else content)
+        target.write_bytes(gzip.compress(content, mtime=0) if _is_packed(target) else content)
         warnings = [
             Warned("side_file", f"the numbers of {shown(name)} are written into {target.name}")
-            for name in sorted(external)
+            for name in external
         ]
         return warnings + precision_warnings(part.vertices, after, target.name)
+
+
+def _is_packed(path: Path) -> bool:
+    return path.suffix.lower() == ".gz"
 
 
 def _read_gifti(path: Path) -> Document:
@@ -183,7 +176,7 @@ def _read_gifti(path: Path) -> Document:
     budget = Budget(path, path.stat().st_size)
     with path.open("rb") as file:
         content = file.read()
-    if path.suffix.lower() == ".gz":
+    if _is_packed(path):
         with gzip.open(path) as packed:
             content = budget.unpacked(packed, "its XML")
     image = _parsed(path, content, budget)

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable
 from pathlib import Path
 from typing import NamedTuple
 
 from meshlab_spectral.errors import MeshFileError
 from meshlab_spectral.formats.names import FREE_SURFER, ending_of, shown
+from meshlab_spectral.formats.table import FORMATS, Format
 
 _LOOKED_AT = 4096  # bytes
 _LONGEST = 300  # characters of a reader's reason
@@ -116,50 +116,8 @@ _KINDS = [
     _kind("XML of another kind", "", rb"\s*<\?xml", _NO_MESH),
     _kind("Wavefront OBJ", "obj", rb"(?:.*[\r\n])?[ \t]*v(?:[ \t]+-?\d[-+\d.e]*){3,}\s"),
 ]
-_NAMES = {
-    "ply": "PLY",
-    "obj": "OBJ",
-    "off": "OFF",
-    "stl": "STL",
-    "gltf": "glTF",
-    "glb": "binary glTF",
-    "3mf": "3MF",
-    "vtk": "VTK",
-    "vtp": "VTK",
-    "vtu": "VTK",
-    "gii": "GIFTI",
-    "gii.gz": "GIFTI",
-    "usd": "USD",
-    "usda": "USD",
-    "usdc": "binary USD",
-    "usdz": "a USD package",
-    "al3d": "Alicona AL3D",
-    "gwy": "Gwyddion",
-    "nms": "NanoFocus NMS",
-    "opd": "Wyko OPD",
-    "plu": "Sensofar PLU",
-    "plux": "Sensofar PLUX",
-    "sdf": "SDF",
-    "sur": "Digital Surf",
-    "tif": "GeoTIFF",
-    "tiff": "GeoTIFF",
-    "tmd": "TrueMap",
-    "x3p": "X3P",
-    FREE_SURFER: "a surface of FreeSurfer",
-}
-_TEXTS = ("ply", "obj", "off", "stl", "gltf", "vtk", "vtp", "vtu", "gii", "usda")
+_FREE_SURFER = Format("a surface of FreeSurfer", "brain")
 _COMMAS = re.compile(rb"(?m)^[ \t]*(?:v[nt]?[ \t]+|vertex[ \t]+)?-?\d+,\d+[ \t]+-?\d+,\d+[ \t]")
-# What the end of a whole file holds.
-_ENDS: dict[str, Callable[[bytes], bool]] = {
-    "vtp": lambda content: b"</VTKFile" in content[-1000:],
-    "vtu": lambda content: b"</VTKFile" in content[-1000:],
-    "gii": lambda content: b"</GIFTI" in content[-1000:],
-    "3mf": lambda content: b"PK\5\6" in content[-66000:],
-    "usdz": lambda content: b"PK\5\6" in content[-66000:],
-    "gltf": lambda content: content.rstrip().endswith(b"}"),
-    "usda": lambda content: content.rstrip().endswith(b"}"),
-    "glb": lambda content: len(content) >= int.from_bytes(content[8:12], "little") > 0,
-}
 
 
 def unreadable(path: Path, reason: object, ending: str = "") -> MeshFileError:
@@ -175,7 +133,7 @@ def unreadable(path: Path, reason: object, ending: str = "") -> MeshFileError:
         The format in which it has been read, as an extension; by default that of its name.
     """
     ending = ending or ending_of(path.name).lower()
-    ending = ending if ending in _NAMES else FREE_SURFER
+    ending = ending if ending in FORMATS else FREE_SURFER
     content = path.read_bytes() if path.is_file() else b"?"
     message = shown(" ".join(str(reason).split()), _LONGEST)
     code, text = _cause(content, ending, message, reason)
@@ -184,17 +142,18 @@ def unreadable(path: Path, reason: object, ending: str = "") -> MeshFileError:
 
 def _cause(content: bytes, ending: str, message: str, reason: object) -> tuple[str, str]:
     """Return the code, and what follows the name of the file."""
-    name = _NAMES.get(ending, f".{ending}")
+    known = FORMATS.get(ending, _FREE_SURFER)
+    name = known.name
     if not content.strip(b" \t\r\n"):
         return "empty", f"is empty: {_AGAIN}"
-    if ending in _TEXTS and _is_utf16(content):
+    if known.is_text and _is_utf16(content):
         return "encoding", "is text in UTF-16: save it in UTF-8 or ASCII"
     kind = _kind_of(content[:_LOOKED_AT])
     if kind and ending not in kind.endings:
         return "foreign", _foreign(kind, name)
-    if ending in _TEXTS and _COMMAS.search(content):
+    if known.is_text and _COMMAS.search(content):
         return "decimal_commas", "has decimal commas, as in 1,5: write decimal points"
-    is_cut = kind is not None and ending in _ENDS and not _ENDS[ending](content)
+    is_cut = kind is not None and known.is_ended is not None and not known.is_ended(content)
     if is_cut or isinstance(reason, EndsEarlyError):
         damaged = " or is damaged" if isinstance(reason, MayEndEarlyError) else ""
         return "cut_off", f"ends too early ({message}): it was cut off{damaged}; {_AGAIN}"

@@ -6,13 +6,14 @@ from abc import ABC, abstractmethod
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
+from shutil import copyfile
 
 import numpy as np
 from numpy.typing import NDArray
 
 from meshlab_spectral.errors import MeshFileError
 from meshlab_spectral.formats.causes import unreadable
-from meshlab_spectral.formats.side_files import is_outside
+from meshlab_spectral.formats.side_files import copy_side_files, is_outside
 from meshlab_spectral.warned import Warned
 
 Array = NDArray[np.float64]
@@ -99,7 +100,6 @@ class Document(ABC):
             return False
         return not any(is_outside(self.path, name) for name in self.side_files())
 
-    @abstractmethod
     def save(self, target: Path, moved: Sequence[Array]) -> list[Warned]:
         """Write the file with new coordinates, in its own format.
 
@@ -123,6 +123,19 @@ class Document(ABC):
         OSError
             When `target` cannot be written.
         """
+        pairs = zip(self.parts, moved, strict=True)
+        if all(np.array_equal(part.vertices, new) for part, new in pairs) and self.keeps(target):
+            copyfile(self.path, target)
+            return copy_side_files(self.path, target, self.side_files())
+        return self.write(target, moved)
+
+    def keeps(self, target: Path) -> bool:
+        """Whether the bytes of the file can have the name of `target`."""
+        return True
+
+    @abstractmethod
+    def write(self, target: Path, moved: Sequence[Array]) -> list[Warned]:
+        """Do what `save` does, of which some vertex has moved."""
 
 
 _MOST_CORNERS = 500

@@ -78,8 +78,11 @@ class GltfDocument(Document):
     _meshes: list[_Mesh] = field(default_factory=list, kw_only=True, repr=False)
     _compression: list[Warned] = field(default_factory=list, kw_only=True, repr=False)
 
-    def save(self, target: Path, moved: Sequence[Array]) -> list[Warned]:
-        """Write the asset with new positions, normals and tangents; see `Document`."""
+    def side_files(self) -> list[str]:  # noqa: D102
+        return self._asset.side_files()
+
+    def write(self, target: Path, moved: Sequence[Array]) -> list[Warned]:
+        """Write the asset with new positions, normals and tangents."""
         warnings: list[Warned] = []
         with reporting_faults(self.path):
             asset = copy.deepcopy(self._asset)
@@ -93,8 +96,7 @@ class GltfDocument(Document):
                     users[accessor].append(user)
             for accessor, sharing in users.items():
                 warnings += _put(asset, accessor, sharing)
-            if asset.is_patched:
-                warnings += self._compression
+            warnings += self._compression
             warnings += copy_side_files(self.path, target, asset.write(target))
         return warnings
 

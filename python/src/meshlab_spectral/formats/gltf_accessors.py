@@ -116,11 +116,15 @@ class Asset:
         self._written[index].append((number, values))
         return number
 
-    def write(self, target: Path) -> list[str]:
-        """Write the asset, with patched buffers next to it; return the other files it refers to."""
+    def side_files(self) -> list[str]:
+        """Return the names of the files that the asset refers to."""
         entries = [*self.tree.get("buffers", []), *self.tree.get("images", [])]
         uris = [entry["uri"] for entry in entries if "uri" in entry]
-        names = [unquote(uri) for uri in uris if not uri.startswith(("data:", "http:", "https:"))]
+        return [unquote(uri) for uri in uris if not uri.startswith(("data:", "http:", "https:"))]
+
+    def write(self, target: Path) -> list[str]:
+        """Write the asset, with patched buffers next to it; return the other files it refers to."""
+        names = self.side_files()
         taken = set(names)
         for number in self._patched | self._grown if self._patched else ():
             entry, data = self.tree["buffers"][number], self.buffers[number]

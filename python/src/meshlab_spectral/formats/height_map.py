@@ -26,7 +26,10 @@ _Affine = tuple[float, float, float, float, float, float]
 class _HeightMap(Document):
     """A map, whose coordinates are not replaced: vertices of a mesh leave the grid."""
 
-    def save(self, target: Path, moved: Sequence[Array]) -> list[Warned]:
+    def keeps(self, target: Path) -> bool:
+        return False
+
+    def write(self, target: Path, moved: Sequence[Array]) -> list[Warned]:
         raise FormatError(f"{target.name}: height maps are only read; name the output .ply")
 
 

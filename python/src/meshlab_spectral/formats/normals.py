@@ -22,6 +22,17 @@ def following_normals(
     return _core.following_normals(before, after, faces, normals, which)
 
 
+def following_face_normals(
+    before: Array, after: Array, faces: Indices, normals: Array, owners: Indices | None = None
+) -> Array:
+    """Return the same for normals of faces, k x 3; each is on its side of the surface, as it was.
+
+    `owners` are the faces of the triangles, m of k; by default the triangles themselves.
+    """
+    owners = np.arange(len(faces)) if owners is None else owners
+    return _core.following_face_normals(before, after, faces, normals, owners)
+
+
 def are_normals(vectors: Any, count: int) -> bool:
     """Whether an array holds vectors of unit length at the vertices."""
     if vectors.shape != (count, 3) or vectors.dtype.kind != "f":

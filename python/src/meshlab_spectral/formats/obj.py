@@ -58,7 +58,7 @@ class _Obj(Document):
     normals: Array
     which: Indices  # the normal of each corner of the triangles; -1 where it has none
 
-    def save(self, target: Path, moved: Sequence[Array]) -> list[Warned]:
+    def write(self, target: Path, moved: Sequence[Array]) -> list[Warned]:
         part, after, which = self.parts[0], moved[0], self.which
         before, faces, content = part.vertices, part.faces, self.content
         starts, normal_starts, given = self.starts, self.normal_starts, self.normals

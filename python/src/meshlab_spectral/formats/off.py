@@ -42,7 +42,7 @@ class _Off(Document):
     content: bytes
     rows: _Rows
 
-    def save(self, target: Path, moved: Sequence[Array]) -> list[Warned]:
+    def write(self, target: Path, moved: Sequence[Array]) -> list[Warned]:
         (part,), (after,) = self.parts, moved
         rows = self.rows
         digits = digits_for(part.vertices, after)

@@ -6,7 +6,7 @@ import io
 import os
 import re
 import warnings
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import IO, Any
@@ -39,6 +39,7 @@ from meshlab_spectral.formats.document import (
 from meshlab_spectral.formats.names import shown
 from meshlab_spectral.formats.normals import following_normals
 from meshlab_spectral.formats.polygons import strip_triangles, triangles
+from meshlab_spectral.formats.rows import Rows
 from meshlab_spectral.formats.side_files import copy_side_files
 from meshlab_spectral.formats.text import BYTE_ORDER_MARK, Lines, lines_of, whole, write_patched
 from meshlab_spectral.warned import Warned
@@ -54,15 +55,14 @@ _KNOWN = {
     "quality": {"quality"},
 }
 _LARGEST_CUT = 1000  # largest ratio of what a file claims to hold to what it holds, as of STL
-SELECTED = 0x20  # VCG's flag
+_SELECTED = 0x20  # VCG's flag
 # Elements, or properties: Gaussian splats have 62, with learned features some 1,000. The time of
 # plyfile grows with their square.
 _MOST_NAMES = 10_000
 _LONGEST_SIZE = 12  # characters of the size of a list, of at most 32 bits, and a blank
-_Rows = np.ndarray[Any, Any]
 _Table = dict[str, Any]  # the numbers of a property; for lists their sizes, and all items
 _Changes = dict[tuple[str, ...], tuple[Array, Array]]  # before and after
-_Columns = dict[tuple[str, ...], tuple[Indices | slice, Array]]  # in which rows, and what
+Columns = dict[tuple[str, ...], tuple[Indices | slice, Array]]  # in which rows, and what
 
 
 @dataclass(kw_only=True)
@@ -72,23 +72,20 @@ class PlyDocument(Document):
     content: bytes
     header: bytes
     ply: PlyData
-    rows: Indices | _Rows  # of the vertices: byte offsets of text lines, or binary rows
+    rows: Indices | Rows  # of the vertices: byte offsets of text lines, or binary rows
     begin: int  # byte offset of binary rows
     normals: Array | None
     first: dict[tuple[str, ...], int]  # text: the words before coordinates, and before normals
     places: dict[str, Indices] | None = None  # of binary numbers whose rows differ in length
 
-    def save(self, target: Path, moved: Sequence[Array]) -> list[Warned]:  # noqa: D102
+    def write(self, target: Path, moved: Sequence[Array]) -> list[Warned]:  # noqa: D102
         before, (after,) = self.parts[0].vertices, moved
         types = {self.ply["vertex"].ply_property(name).val_dtype for name in AXES}
         loss = rounding_loss(before, after) if "f4" in types else None
-        if (after != before).any() and any(type_[0] != "f" for type_ in types):
+        if any(type_[0] != "f" for type_ in types):
             loss = "the file has integers"
         with target.open("wb") as file:
-            if (after != before).any():
-                self._write(file, after, bool(loss))
-            else:
-                file.write(self.content)
+            self._write(file, after, bool(loss))
         return widening_warnings(loss) + copy_side_files(self.path, target, self.side_files())
 
     def side_files(self) -> list[str]:  # noqa: D102
@@ -109,7 +106,7 @@ class PlyDocument(Document):
             file.write(self._patched(changes, self.places, is_wide)[start:].data)
         else:
             content, end = memoryview(self.content), self.begin + rows.nbytes
-            columns: _Columns = {a: (slice(None), new) for a, (_, new) in changes.items()}
+            columns: Columns = {a: (slice(None), new) for a, (_, new) in changes.items()}
             moved = with_columns(rows, columns, self.ply.byte_order if is_wide else None)
             bytes_ = moved.view(np.uint8).data
             file.writelines([content[start : self.begin], bytes_, content[end:]])
@@ -139,7 +136,7 @@ class PlyDocument(Document):
         return content
 
 
-def with_columns(rows: _Rows, columns: _Columns, wide: str | None) -> _Rows:
+def with_columns(rows: Rows, columns: Columns, wide: str | None) -> Rows:
     """Return binary rows with new numbers; `wide` is the byte order of doubles, if needed."""
     fields = [
         (name, f"{wide}f8" if wide and name in AXES else type_, *shape)
@@ -175,10 +172,10 @@ def read(path: Path) -> PlyDocument:
     except (PlyParseError, ValueError, LookupError, TypeError, OverflowError) as error:
         raise unreadable(path, error) from error
     check_indices(path, faces, len(vertices))
-    values = [name for name in ("quality", "confidence") if has_floats(ply["vertex"], name)]
-    quality = _columns(vertex, values[0])[:, 0] if values else None
+    value = quality_of(ply["vertex"])
+    quality = vertex[value].copy() if value else None
     has_normals = has_floats(ply["vertex"], *NORMALS)
-    is_uneven = not ply.text and _is_uneven(vertex)
+    is_uneven, sizes = not ply.text and _is_uneven(vertex), _sizes(vertex)
     return PlyDocument(
         path,
         [Part("", vertices, faces, quality, _selected(tables, len(vertices)))],
@@ -188,7 +185,12 @@ def read(path: Path) -> PlyDocument:
         ply=ply,
         rows=rows
         if ply.text or is_uneven
-        else np.ndarray(len(vertices), _type(ply, vertex), content, begin),
+        else np.ndarray(
+            len(vertices),
+            row_type(ply["vertex"], ply.byte_order, lambda fields: sizes[fields[-1][0][:-1]]),
+            content,
+            begin,
+        ),
         places=_places(ply, vertex, begin) if is_uneven else None,
         begin=begin,
         normals=_columns(vertex, *NORMALS) if has_normals else None,
@@ -333,13 +335,14 @@ def _first_word(table: _Table, name: str) -> int:
     return len(before) + sum(_sizes(table).get(one, 0) for one in before)
 
 
-def _type(ply: PlyData, table: _Table) -> np.dtype[Any]:
-    """Return the type of binary vertices."""
-    order, sizes, fields = ply.byte_order, _sizes(table), list[Any]()
-    for one in ply["vertex"].properties:
-        if one.name in sizes:
+def row_type(element: PlyElement, order: str, size_of: Callable[[Any], int]) -> np.dtype[Any]:
+    """Return the type of binary rows; `size_of` a list, given the fields up to its size."""
+    fields = list[Any]()
+    for one in element.properties:
+        shape: tuple[int, ...] = ()
+        if isinstance(one, PlyListProperty):
             fields.append((f"{one.name}\n", order + one.len_dtype))
-        shape = (sizes[one.name],) if one.name in sizes else ()
+            shape = (size_of(fields),)
         fields.append((one.name, order + one.val_dtype, shape))
     return np.dtype(fields)
 
@@ -382,6 +385,11 @@ def has_floats(element: PlyElement, *names: str) -> bool:
     return all(name in element and element.ply_property(name).dtype()[1] == "f" for name in names)
 
 
+def quality_of(element: PlyElement) -> str:
+    """Return the name of the quality, as MeshLab calls it, or scanners; "" if there is none."""
+    return next((name for name in ("quality", "confidence") if has_floats(element, name)), "")
+
+
 def _has_numbers(element: PlyElement) -> bool:
     axes = [element.ply_property(name) for name in AXES if name in element]
     return len(axes) == 3 and not any(isinstance(one, PlyListProperty) for one in axes)
@@ -409,12 +417,17 @@ def _selected(tables: dict[str, _Table], count: int) -> NDArray[np.bool_] | None
     """Return which vertices MeshLab's flags select, directly or by a face; None if none."""
     chosen = np.zeros(count, bool)
     if "flags" in tables["vertex"]:
-        chosen |= tables["vertex"]["flags"].astype(np.int64) & SELECTED > 0
+        chosen |= is_selected(tables["vertex"]["flags"])
     faces = _corners(tables.get("face", {}))
     if faces and "flags" in tables["face"]:
-        flags = tables["face"]["flags"].astype(np.int64) & SELECTED > 0
+        flags = is_selected(tables["face"]["flags"])
         chosen[faces[0][np.repeat(flags, faces[1])]] = True
     return chosen if chosen.any() else None
+
+
+def is_selected(flags: Any) -> NDArray[np.bool_]:
+    """Whether flags of MeshLab say so, for each of them."""
+    return np.asarray(flags.astype(np.int64) & _SELECTED > 0)
 
 
 def _contents(ply: PlyData, counts: dict[str, int], header: bytes, triangles: int) -> list[str]:

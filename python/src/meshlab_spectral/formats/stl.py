@@ -6,14 +6,17 @@ import struct
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import ClassVar
 
 import numpy as np
 
-from meshlab_spectral._core import first_equal_rows, following_facet_normals
+from meshlab_spectral._core import first_equal_rows
+from meshlab_spectral.errors import UntiledError
 from meshlab_spectral.formats.causes import EndsEarlyError, ForeignError, unreadable
 from meshlab_spectral.formats.digits import SINGLE, digits_for, precision_warnings
 from meshlab_spectral.formats.document import Array, Document, Indices, Part, check_vertices
+from meshlab_spectral.formats.normals import following_face_normals
+from meshlab_spectral.formats.rows import Between, MeshRows, Rows
 from meshlab_spectral.formats.text import BYTE_ORDER_MARK, lines_of, write_patched
 from meshlab_spectral.warned import Warned
 
@@ -30,22 +33,22 @@ class _BinaryStl(Document):
     content: bytes
     count: int
 
-    def save(self, target: Path, moved: Sequence[Array]) -> list[Warned]:
+    def write(self, target: Path, moved: Sequence[Array]) -> list[Warned]:
         (part,), (after,) = self.parts, moved
         content = bytearray(self.content)
         rows = np.frombuffer(content, TRIANGLE, self.count, HEADER)
-        move(rows, part.vertices, after, part.faces)
+        _move(rows, part.vertices, after, part.faces)
         target.write_bytes(content)
         return precision_warnings(part.vertices, after, target.name)
 
 
-def move(rows: np.ndarray[Any, Any], before: Array, after: Array, faces: Indices) -> None:
+def _move(rows: Rows, before: Array, after: Array, faces: Indices) -> None:
     """Write corners that have moved into binary facets, and normals that follow."""
     changed = (after != before)[faces]
     np.copyto(rows["corners"], after.astype("<f4")[faces], where=changed)
     with np.errstate(invalid="ignore"):
         normals = rows["normal"].astype(np.float64)
-    rows["normal"] = following_facet_normals(before, after, faces, normals)
+    rows["normal"] = following_face_normals(before, after, faces, normals)
 
 
 @dataclass(kw_only=True)
@@ -55,10 +58,10 @@ class _TextStl(Document):
     corners: Indices
     normals: Array
 
-    def save(self, target: Path, moved: Sequence[Array]) -> list[Warned]:
+    def write(self, target: Path, moved: Sequence[Array]) -> list[Warned]:
         (part,), (after,) = self.parts, moved
         before, corners = part.vertices, part.faces.ravel()
-        normals = following_facet_normals(before, after, part.faces, self.normals)
+        normals = following_face_normals(before, after, part.faces, self.normals)
         changes = [
             (self.corners, 1, before[corners], after[corners], digits_for(before, after)),
             (self.facets, 2, self.normals, normals, SINGLE),
@@ -150,3 +153,41 @@ def _connected(path: Path, points: Array) -> Part:
     is_new = first == np.arange(len(points))
     index = np.cumsum(is_new) - 1
     return Part("", points[is_new], index[first].reshape(-1, 3))
+
+
+class _StlRows(MeshRows):
+    is_joined_by_position: ClassVar[bool] = True
+
+    @property
+    def vertices(self) -> int:
+        return self.faces // 2
+
+    def columns(self, numbers: Indices | slice, kind: str = "positions") -> Array:
+        if isinstance(numbers, slice):
+            numbers = np.arange(numbers.start, min(numbers.stop, self.points))
+        return self.block["corners"][numbers // 3, numbers % 3].astype(np.float64, order="F")
+
+    def triangles(self, begin: int, end: int) -> Indices:
+        return np.arange(3 * begin, 3 * end).reshape(-1, 3)
+
+    def written(
+        self, begin: int, end: int, moved: Between, normals: Between, is_wide: bool
+    ) -> Rows:
+        rows = np.array(self.block[begin:end], TRIANGLE)
+        before = rows["corners"].reshape(-1, 3).astype(np.float64)
+        after = before.copy()
+        where, new = moved(3 * begin, 3 * end)
+        after[where] = new
+        _move(rows, before, after, np.arange(len(before)).reshape(-1, 3))
+        return rows
+
+
+def open_rows(path: Path) -> MeshRows:
+    """Open a binary STL file; raise UntiledError if it is none."""
+    with path.open("rb") as file:
+        head = file.read(HEADER)
+    count = _count(head)
+    if path.stat().st_size != _size(head) or not count:
+        raise UntiledError(f"{path.name} is no binary STL file: convert it to binary PLY first")
+    block = np.memmap(path, TRIANGLE, "r", HEADER, count)
+    return _StlRows(path=path, points=3 * count, faces=count, block=block, begin=HEADER)

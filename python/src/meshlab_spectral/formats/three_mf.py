@@ -202,15 +202,12 @@ class _ThreeMfDocument(Document):
         self.parts.append(replace(part, copies=mesh.placement.copies))
         self.meshes.append((model, mesh))
 
-    def save(self, target: Path, moved: Sequence[Array]) -> list[Warned]:
+    def write(self, target: Path, moved: Sequence[Array]) -> list[Warned]:
         changes: dict[str, list[tuple[_Object, Array]]] = defaultdict(list)
         for (model, mesh), part, vertices in zip(self.meshes, self.parts, moved, strict=True):
             if not np.array_equal(vertices, part.vertices):
                 after = mesh.placement.back(mesh.own, part.vertices, vertices)
                 changes[model].append((mesh, after))
-        if not changes:
-            target.write_bytes(self.data)
-            return []
         budget = Budget(self.path, len(self.data))
         with zipfile.ZipFile(io.BytesIO(self.data)) as source, zipfile.ZipFile(target, "w") as copy:
             copy.comment = source.comment

@@ -100,12 +100,8 @@ class _UsdDocument(Document):
     def side_files(self) -> list[str]:
         return self.names
 
-    def save(self, target: Path, moved: Sequence[Array]) -> list[Warned]:
-        pairs = zip(self.parts, moved, strict=True)
+    def write(self, target: Path, moved: Sequence[Array]) -> list[Warned]:
         warnings: list[Warned] = []
-        if all(np.array_equal(part.vertices, new) for part, new in pairs):
-            target.write_bytes(self.path.read_bytes())
-            return copy_side_files(self.path, target, self.names)
         layers = [one for one in self.stage.GetUsedLayers() if not one.anonymous]
         try:
             for mesh, part, new in zip(self.meshes, self.parts, moved, strict=True):

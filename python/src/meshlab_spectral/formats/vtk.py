@@ -27,7 +27,7 @@ from meshlab_spectral.formats.digits import (
 )
 from meshlab_spectral.formats.document import Array, Document, Indices, Part, check_vertices
 from meshlab_spectral.formats.names import shown
-from meshlab_spectral.formats.normals import following_normals
+from meshlab_spectral.formats.normals import following_face_normals, following_normals
 from meshlab_spectral.formats.polygons import strip_triangles, triangles
 from meshlab_spectral.formats.text import Change, numbers_from, write_patched
 from meshlab_spectral.warned import Warned
@@ -138,11 +138,8 @@ class _VtkDocument(Document):
     mesh: Any
     owners: Indices  # the cell of each triangle
 
-    def save(self, target: Path, moved: Sequence[Array]) -> list[Warned]:
+    def write(self, target: Path, moved: Sequence[Array]) -> list[Warned]:
         before, faces, after = self.parts[0].vertices, self.parts[0].faces, moved[0]
-        if np.array_equal(before, after):
-            target.write_bytes(self.path.read_bytes())
-            return []
         mesh = self.mesh.copy()
         loss = None if mesh.points.dtype == np.float64 else rounding_loss(before, after)
         if mesh.points.dtype.kind != "f":
@@ -151,11 +148,8 @@ class _VtkDocument(Document):
         for normals in _normals(mesh.point_data):
             normals[:] = following_normals(before, after, faces, np.array(normals))
         for normals in _normals(mesh.cell_data):
-            old, new = (_areas(P[faces], self.owners, normals.shape) for P in (before, after))
-            side = np.sign((old * normals).sum(axis=1, keepdims=True))  # normals stay on their side
-            length = np.linalg.norm(new, axis=1, keepdims=True) * side
-            turned = (old != new).any(axis=1) & (length[:, 0] != 0)
-            normals[turned] = new[turned] / length[turned]
+            given = np.array(normals, np.float64)
+            normals[:] = following_face_normals(before, after, faces, given, self.owners)
         content = self.path.read_bytes()
         changes, text = _changes_of_text(content, self.mesh, mesh, bool(loss))
         if changes:
@@ -250,13 +244,6 @@ def _place_of_array(content: bytes, begin: int, section: bytes, name: str) -> in
         elif current == section:
             return match.end()
     return None
-
-
-def _areas(P: Array, owners: Indices, shape: tuple[int, ...]) -> Array:
-    """Return the vector areas of cells, from the corners of their triangles, m x 3 x 3."""
-    areas = np.zeros(shape)
-    np.add.at(areas, owners, np.cross(P[:, 1] - P[:, 0], P[:, 2] - P[:, 0]))
-    return areas
 
 
 def _normals(data: Any) -> list[Any]:

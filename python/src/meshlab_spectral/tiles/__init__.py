@@ -6,3 +6,5 @@ hands every face to each tile that needs it, `tile` filters one of them in a chi
 writes the output, and `plan` knows the folder in which all of that is. `run` does all of it by
 `workers`; `whole_or_tiles` says when, and `one_file` is what users call.
 """
+
+MOST_TILES = 4096

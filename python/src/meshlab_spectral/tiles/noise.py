@@ -5,8 +5,8 @@ from __future__ import annotations
 from statistics import median
 from typing import Any
 
+from meshlab_spectral.errors import UntiledError
 from meshlab_spectral.filters.options import DenoiseOptions
-from meshlab_spectral.tiles.bounds import UntiledError
 
 # How far denoising reaches, in mean edges: beyond, what is cut off turns no normal by a tenth of a
 # degree (tests/python/tiles/test_denoise.py).

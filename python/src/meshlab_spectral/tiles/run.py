@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from meshlab_spectral.errors import MeshFileError, OptionError
+from meshlab_spectral.errors import MeshFileError, OptionError, UntiledError
 from meshlab_spectral.files.extensions import is_same_format
 from meshlab_spectral.files.intent import sizes_of
 from meshlab_spectral.files.region_vertices import NOTHING_SELECTED
@@ -21,23 +21,24 @@ from meshlab_spectral.files.whole_files import LOCK, check_target, holding, reso
 from meshlab_spectral.filters.option_types import Options
 from meshlab_spectral.filters.options import DenoiseOptions, FilterOptions
 from meshlab_spectral.formats.digits import rounding_message, widening_warnings
+from meshlab_spectral.formats.opening import open_rows
+from meshlab_spectral.formats.rows import MeshRows
 from meshlab_spectral.plugin.limits import memory_remedy
 from meshlab_spectral.plugin.versions import versions
-from meshlab_spectral.tiles.bounds import MOST_TILES, UntiledError
+from meshlab_spectral.tiles import MOST_TILES
 from meshlab_spectral.tiles.cells import near_cells, split
 from meshlab_spectral.tiles.gather import gather
 from meshlab_spectral.tiles.halo import reach_of, require_local
 from meshlab_spectral.tiles.noise import given_noise, measured_noise
 from meshlab_spectral.tiles.plan import Plan, Workspace
 from meshlab_spectral.tiles.report import combined, singular_part
-from meshlab_spectral.tiles.rows import MeshRows, open_rows
 from meshlab_spectral.tiles.scatter import scatter
 from meshlab_spectral.tiles.survey import Survey, survey
 from meshlab_spectral.tiles.tile_jobs import TileJob, check_seen, run_tile
 from meshlab_spectral.warned import Warned, warned, with_warnings
-from meshlab_spectral.workers.local import local_workers
-from meshlab_spectral.workers.memory import PROCESS_BYTES, TILE_BYTES, limit_for, workers
-from meshlab_spectral.workers.pool import Workers, run_jobs
+from meshlab_spectral.workers.local import open_workers
+from meshlab_spectral.workers.memory import PROCESS_BYTES, TILE_BYTES, limit_for, workers_for_tiles
+from meshlab_spectral.workers.pool import Workers
 from meshlab_spectral.workers.process import ProgressCallback
 
 # Larger tiles are hardly faster, and a failed or interrupted one costs more.
@@ -240,7 +241,7 @@ def _too_large(reach: float, vertices: float, pool: _Pool, has_number: bool) -> 
 
 def _require_space(rows: MeshRows, folder: Path, times: float) -> None:
     """Raise MeshFileError unless what tiles write has room, with the output."""
-    each = 4 + 24 + (24 if rows.normals else 0)
+    each = 4 + 24 + (24 if "normals" in rows.kinds else 0)
     needed = 1.1 * times * 12 * rows.faces + each * rows.points + 1.3 * rows.path.stat().st_size
     free = shutil.disk_usage(folder).free
     if needed > free:
@@ -252,11 +253,8 @@ def _require_space(rows: MeshRows, folder: Path, times: float) -> None:
 
 
 def _workers(scheduler: str | None) -> contextlib.AbstractContextManager[_Pool]:
-    if scheduler is None:
-        return local_workers(run_tile, *workers())
-    from meshlab_spectral.workers.cluster import workers_at
-
-    return workers_at(scheduler, run_tile)
+    count, memory = workers_for_tiles() if scheduler is None else (None, None)
+    return open_workers(run_tile, scheduler, count, memory)
 
 
 def _filtered(
@@ -272,7 +270,7 @@ def _filtered(
         left = [tile for tile in tiles if not _is_done(reports[tile], wanted)]
         place = plan.source, str(work.folder)
         jobs = [TileJob(*place, tile, plan.tiles, wanted) for tile in left]
-        with contextlib.closing(run_jobs(pool, jobs, lambda _: None)) as results:
+        with contextlib.closing(pool.run(jobs)) as results:
             for done, (tile, report) in enumerate(results, 1):
                 reports[tile] = report
                 name = f"tile {plan.tiles - len(left) + done}"

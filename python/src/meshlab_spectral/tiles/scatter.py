@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
+from meshlab_spectral.formats.rows import MeshRows, chunks
 from meshlab_spectral.tiles.cells import near_cells
-from meshlab_spectral.tiles.plan import Plan, Workspace
-from meshlab_spectral.tiles.rows import MeshRows, StageCallback, chunks
+from meshlab_spectral.tiles.plan import Plan, StageCallback, Workspace
 
 
 def scatter(mesh: MeshRows, plan: Plan, work: Workspace, on_progress: StageCallback) -> None:

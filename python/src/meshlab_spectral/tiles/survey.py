@@ -8,9 +8,9 @@ from typing import NamedTuple
 import numpy as np
 
 from meshlab_spectral.errors import MeshFileError
-from meshlab_spectral.formats import ply
 from meshlab_spectral.formats.document import Array
-from meshlab_spectral.tiles.rows import MeshRows, StageCallback, chunks
+from meshlab_spectral.formats.rows import MeshRows, chunks
+from meshlab_spectral.tiles.plan import StageCallback
 
 _SAMPLE = 400_000  # points, at most, by which the cells are chosen
 
@@ -37,9 +37,9 @@ def survey(mesh: MeshRows, on_progress: StageCallback) -> Survey:
     box, surface, total, sample, has_selection = _Box(), _Box(), 0.0, [], False
     if not mesh.is_joined_by_position:
         for i, j in chunks(mesh.points):
-            box.add(_finite(mesh, mesh.positions(slice(i, j))))
+            box.add(_finite(mesh, mesh.columns(slice(i, j))))
             if mesh.flags[0]:
-                has_selection |= _any_selected(mesh.columns(slice(i, j), "flags"))
+                has_selection |= bool(mesh.selected(slice(i, j)).any())
             mesh.forget()
     share = min(1.0, _SAMPLE / mesh.faces)
     for i, j in chunks(mesh.faces):
@@ -70,10 +70,6 @@ class _Box:
     @property
     def diagonal(self) -> float:
         return float(np.linalg.norm(self.high - self.low))
-
-
-def _any_selected(flags: Array) -> bool:
-    return bool((flags.astype(np.int64) & ply.SELECTED).any())
 
 
 def _finite(mesh: MeshRows, points: Array) -> Array:

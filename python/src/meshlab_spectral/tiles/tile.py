@@ -16,12 +16,12 @@ from meshlab_spectral._core import first_equal_rows, vertex_areas
 from meshlab_spectral.errors import MeshError, MeshFileError
 from meshlab_spectral.filters.progress import Progress
 from meshlab_spectral.filters.running import TiledSurface, plain, run
-from meshlab_spectral.formats import ply
 from meshlab_spectral.formats.document import Array, Indices
 from meshlab_spectral.formats.normals import following_normals
+from meshlab_spectral.formats.opening import open_rows
+from meshlab_spectral.formats.rows import MeshRows, chunks
 from meshlab_spectral.tiles.cells import near_cells
 from meshlab_spectral.tiles.plan import Workspace, write_whole
-from meshlab_spectral.tiles.rows import MeshRows, open_rows
 
 
 def filter_tile(
@@ -57,13 +57,14 @@ def filter_tile(
         chosen = {name: value for name, value in decided.items() if name != "has_thin_parts"}
         parameters = options.core_parameters() | {k: value for k, value in chosen.items() if value}
         if selected is None or selected.any():  # else nothing here moves
+            has_weight = parameters["weight"] != "none" and "quality" in mesh.kinds
             after, report = _filtered(
                 options.FILTER,
                 before,
                 F,
                 parameters,
                 selected=selected,
-                values=mesh.gathered(ids, mesh.quality) if parameters["weight"] != "none" else None,
+                values=mesh.gathered(ids, "quality") if has_weight else None,
                 progress=on_stage,
                 whole=whole,
             )
@@ -72,8 +73,8 @@ def filter_tile(
         raise MeshFileError(f"another run has begun in {folder}")
     write_whole(work.file(tile, "ids"), np.ascontiguousarray(ids[own], "<u4").data)
     write_whole(work.file(tile, "xyz"), np.ascontiguousarray(moved, "<f8").data)
-    if mesh.normals and len(own):
-        given = mesh.gathered(ids, *ply.NORMALS)
+    if "normals" in mesh.kinds and len(own):
+        given = mesh.gathered(ids, "normals")
         normals = following_normals(before, after, F.astype(np.int64), given)
         write_whole(work.file(tile, "normals"), np.ascontiguousarray(normals[own], "<f8").data)
     asked = {f"wanted_{name}": value for name, value in decided.items()}
@@ -115,7 +116,9 @@ def _selected(
     of_vertices, of_faces = mesh.flags
     chosen = np.zeros(len(ids), bool)
     if of_vertices:
-        chosen |= (mesh.gathered(ids, "flags")[:, 0].astype(np.int64) & ply.SELECTED) > 0
+        for i, j in chunks(len(ids)):
+            chosen[i:j] = mesh.selected(ids[i:j])
+            mesh.forget()
     if of_faces:
         chosen[F[np.fromfile(work.file(tile, "chosen"), bool)]] = True
     return chosen

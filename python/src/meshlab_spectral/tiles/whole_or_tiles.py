@@ -8,13 +8,12 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
-from meshlab_spectral.errors import MemoryLimitError, MeshFileError, OptionError
+from meshlab_spectral.errors import MemoryLimitError, MeshFileError, OptionError, UntiledError
 from meshlab_spectral.extras import check_extras
 from meshlab_spectral.files.region import Region
 from meshlab_spectral.files.sources import check_source
 from meshlab_spectral.files.whole_files import check_target
 from meshlab_spectral.filters.option_types import Options
-from meshlab_spectral.tiles.bounds import UntiledError
 from meshlab_spectral.workers.process import NO_LIMITS, JobLimits, ProgressCallback
 from meshlab_spectral.workers.single_file import measure_in_child, write_in_child
 
@@ -143,7 +142,7 @@ def _limits(source: Path) -> JobLimits:
     check_source(source)
     if source.stat().st_size < _SMALL:
         return NO_LIMITS
-    from meshlab_spectral.tiles.rows import open_rows
+    from meshlab_spectral.formats.opening import open_rows
     from meshlab_spectral.workers.memory import available_memory
 
     try:

@@ -9,7 +9,7 @@ import uuid
 from collections.abc import Callable, Iterator
 from functools import partial
 from pathlib import Path
-from typing import Any, Protocol, TypeVar
+from typing import Any
 
 from distributed import (
     CancelledError,
@@ -26,7 +26,7 @@ from distributed import TimeoutError as DaskTimeoutError  # in Python 3.10, not 
 from meshlab_spectral.errors import BatchError, SpectralError
 from meshlab_spectral.plugin.limits import given_memory_limit
 from meshlab_spectral.plugin.versions import versions
-from meshlab_spectral.workers.pool import ResultT, Workers
+from meshlab_spectral.workers.pool import JobT, ResultT, Workers
 from meshlab_spectral.workers.process import JobLimits
 from meshlab_spectral.workers.processes import Processes, ProcessesEndedError
 
@@ -37,16 +37,6 @@ _SUBMITTED_PER_THREAD = 2
 _FEWEST_SUBMITTED = 100  # for workers that join later
 
 
-class ClusterJob(Protocol):
-    """A job that can be sent to a worker."""
-
-    def failed(self, reason: str, attempts: int) -> Any:
-        """Return, or raise, what comes of it when no worker can do it."""
-
-
-JobT = TypeVar("JobT", bound=ClusterJob)
-
-
 @contextlib.contextmanager
 def workers_at(
     address: str, do: Callable[[Processes, JobT], ResultT]
@@ -55,6 +45,9 @@ def workers_at(
 
     `address` is the scheduler's, such as tcp://10.0.0.1:8786. Raises BatchError when it cannot be
     reached, has no workers, or has workers with other software versions.
+
+    A job has a method `failed`, which is given a reason and the number of attempts, and returns, or
+    raises, what comes of it when no worker can do it.
     """
     plugin = f"meshlab-spectral-{uuid.uuid4()}"  # other batches may use the cluster, too
 
@@ -129,7 +122,7 @@ class _Turns:
 
 
 def _submit(
-    client: Client, plugin: str, turns: _Turns, do: Callable[[Processes, JobT], ResultT], job: JobT
+    client: Client, plugin: str, turns: _Turns, do: Callable[[Processes, Any], ResultT], job: Any
 ) -> ResultT:
     """Let a worker do a job.
 
@@ -164,7 +157,7 @@ def _submit(
     return instead
 
 
-def _instead(error: Exception, job: ClusterJob) -> Any:
+def _instead(error: Exception, job: Any) -> Any:
     """Raise what stops the run, and return the result of a job that alone has failed."""
     if isinstance(error, SpectralError):
         raise error

@@ -31,54 +31,53 @@ class Workers(Generic[JobT, ResultT]):
     on_each: Callable[[Callable[[], object]], object]  # calls a function on each machine
     on_cluster: bool = False
 
+    def run(
+        self, jobs: Sequence[JobT], record: Callable[[ResultT], object] = lambda _: None
+    ) -> Generator[ResultT, None, None]:
+        """Run jobs, begun in this order, and yield the result of each as soon as it is done.
 
-def run_jobs(
-    workers: Workers[JobT, ResultT], jobs: Sequence[JobT], record: Callable[[ResultT], object]
-) -> Generator[ResultT, None, None]:
-    """Run jobs, begun in this order, and yield the result of each as soon as it is done.
+        `record` gets it first, even if the caller is still busy with another one, or ends the
+        iteration meanwhile; several threads call it. Raises what `record` or a worker has raised;
+        the workers end then, and when the iteration ends early.
+        """
+        waiting: queue.SimpleQueue[JobT] = queue.SimpleQueue()
+        results: queue.SimpleQueue[ResultT | BaseException] = queue.SimpleQueue()
+        for job in jobs:
+            waiting.put(job)
 
-    `record` gets it first, even if the caller is still busy with another one, or ends the iteration
-    meanwhile; several threads call it. Raises what `record` or a worker has raised; the workers end
-    then, and when the iteration ends early.
-    """
-    waiting: queue.SimpleQueue[JobT] = queue.SimpleQueue()
-    results: queue.SimpleQueue[ResultT | BaseException] = queue.SimpleQueue()
-    for job in jobs:
-        waiting.put(job)
-
-    def work() -> None:
-        try:
-            with contextlib.suppress(queue.Empty):
-                while True:
-                    result = workers.do(waiting.get_nowait())
-                    record(result)
-                    results.put(result)
-        except BaseException as error:
-            results.put(error)
-
-    def stop() -> None:
-        workers.end()
-        end = time.monotonic() + _SECONDS_TO_END
-        for thread in threads:
-            thread.join(max(0.0, end - time.monotonic()))
-
-    threads: list[threading.Thread] = []
-    atexit.register(stop)  # at the end of a program that has not ended the iteration
-    try:
-        for _ in range(min(len(jobs), workers.at_once)):
-            thread = threading.Thread(target=work, daemon=True)
-            thread.start()
-            threads.append(thread)
-        for _ in jobs:
-            result = None
-            while result is None:
+        def work() -> None:
+            try:
                 with contextlib.suppress(queue.Empty):
-                    result = results.get(timeout=_SECONDS_TO_WAIT)
-            if isinstance(result, BaseException):
-                raise result
-            yield result
-    except BaseException:
-        stop()
-        raise
-    finally:
-        atexit.unregister(stop)
+                    while True:
+                        result = self.do(waiting.get_nowait())
+                        record(result)
+                        results.put(result)
+            except BaseException as error:
+                results.put(error)
+
+        def stop() -> None:
+            self.end()
+            end = time.monotonic() + _SECONDS_TO_END
+            for thread in threads:
+                thread.join(max(0.0, end - time.monotonic()))
+
+        threads: list[threading.Thread] = []
+        atexit.register(stop)  # at the end of a program that has not ended the iteration
+        try:
+            for _ in range(min(len(jobs), self.at_once)):
+                thread = threading.Thread(target=work, daemon=True)
+                thread.start()
+                threads.append(thread)
+            for _ in jobs:
+                result = None
+                while result is None:
+                    with contextlib.suppress(queue.Empty):
+                        result = results.get(timeout=_SECONDS_TO_WAIT)
+                if isinstance(result, BaseException):
+                    raise result
+                yield result
+        except BaseException:
+            stop()
+            raise
+        finally:
+            atexit.unregister(stop)

@@ -21,8 +21,7 @@ from meshlab_spectral.files.whole_files import (
 )
 from meshlab_spectral.filters.option_types import Options
 from meshlab_spectral.filters.options import TextureOptions
-from meshlab_spectral.workers.ahead import process_for_job
-from meshlab_spectral.workers.process import NO_LIMITS, JobLimits, ProgressCallback
+from meshlab_spectral.workers.process import NO_LIMITS, JobLimits, ProgressCallback, process_for_job
 
 if TYPE_CHECKING:
     from meshlab_spectral.files.comparison import Comparison
