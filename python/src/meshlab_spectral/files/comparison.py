@@ -17,6 +17,7 @@ from meshlab_spectral.files.meshes import in_scene, load_parts
 from meshlab_spectral.filters.arrays import lumped_areas, mesh_arrays
 from meshlab_spectral.filters.representations import brief, line, table
 from meshlab_spectral.formats.document import joined
+from meshlab_spectral.formats.normals import area_vectors, vertex_normals
 from meshlab_spectral.warned import Warned, warned, with_warnings
 
 Array = NDArray[np.float64]
@@ -286,10 +287,7 @@ def _arrays(mesh: Any, name: str) -> Arrays:
 
 def _displacements(V: Array, W: Array, F: NDArray[Any]) -> dict[str, Deviation]:
     areas = lumped_areas(V, F)
-    N = np.zeros_like(V)
-    np.add.at(N, F, _area_vectors(V, F)[:, None, :])
-    lengths = np.linalg.norm(N, axis=1, keepdims=True)
-    N = np.divide(N, lengths, out=np.zeros_like(N), where=lengths > 0)
+    N = vertex_normals(V, F)
     moved = np.where(areas[:, None] > 0, W - V, 0.0)
     normal = (moved * N).sum(axis=1)
     parts = {
@@ -333,7 +331,7 @@ def _signed_distances(
     # At an edge VTK takes the normals of both faces; it needs them to share its vertices.
     X, index = np.unique(V, axis=0, return_inverse=True)
     G = index.reshape(-1)[F]
-    G = G[np.linalg.norm(_area_vectors(X, G), axis=1) > 0]
+    G = G[np.linalg.norm(area_vectors(X, G), axis=1) > 0]
     surface = pyvista.PolyData.from_regular_faces(X, G)
     measured = pyvista.PolyData(points).compute_implicit_distance(surface)
     distances = np.asarray(measured["implicit_distance"], dtype=np.float64)
@@ -347,7 +345,7 @@ def _signed_distances(
         at_rim = np.linalg.norm(on_rim - nearest, axis=1)
         tiny = _AT_RIM * float(np.linalg.norm(np.ptp(X, axis=0)))
         # What lies above or below the rim is not beyond it.
-        normals = _area_vectors(X, G)[cells]
+        normals = area_vectors(X, G)[cells]
         height = np.abs(((points - nearest) * normals).sum(axis=1))
         size = np.linalg.norm(points - nearest, axis=1) * np.linalg.norm(normals, axis=1)
         is_beyond |= (at_rim <= tiny) & (height < _ABOVE * size) & (np.abs(distances) > tiny)
@@ -374,15 +372,9 @@ def _deviation(values: Array, V: Array, areas: Array) -> Deviation:
     )
 
 
-def _area_vectors(V: Array, F: NDArray[Any]) -> Array:
-    a, b, c = (V[F[:, corner]] for corner in range(3))
-    vectors: Array = np.cross(b - a, c - a) / 2
-    return vectors
-
-
 def _is_closed(V: Array, F: NDArray[Any]) -> bool:
     """Whether the area vectors sum to zero: then the volume does not depend on the origin."""
-    vectors = _area_vectors(V, F)
+    vectors = area_vectors(V, F)
     total = float(np.linalg.norm(vectors, axis=1).sum())
     return bool(np.linalg.norm(vectors.sum(axis=0)) <= _CLOSED * total)
 

@@ -12,6 +12,7 @@ from meshlab_spectral import _core
 from meshlab_spectral.errors import MeshFileError
 from meshlab_spectral.files.meshes import StageCallback, load_parts
 from meshlab_spectral.files.meshlab_files import read_with_meshlab
+from meshlab_spectral.files.touching import least_linked
 from meshlab_spectral.filters.options import SpectrumOptions
 from meshlab_spectral.filters.running import plain, run
 from meshlab_spectral.formats.document import Part, joined
@@ -88,16 +89,7 @@ def _boundary_loops(V: NDArray[np.float64], F: NDArray[np.int64]) -> int:
     corners = place[F]
     sides = np.vstack([corners[:, [k, (k + 1) % 3]] for k in range(3)])
     edges, faces = np.unique(np.sort(sides, axis=1), axis=0, return_counts=True)
-    parent: dict[int, int] = {}
-
-    def root(vertex: int) -> int:
-        while parent.setdefault(vertex, vertex) != vertex:
-            parent[vertex] = vertex = parent[parent[vertex]]
-        return vertex
-
-    for one, other in edges[faces == 1].tolist():
-        parent[root(one)] = root(other)
-    return sum(vertex == above for vertex, above in parent.items())
+    return len(set(least_linked(edges[faces == 1].tolist()).values()))
 
 
 def _selected(source: Path, parts: list[Part]) -> dict[str, int]:

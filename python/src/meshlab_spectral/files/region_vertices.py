@@ -14,7 +14,8 @@ from meshlab_spectral import _core
 from meshlab_spectral.errors import InputError, OptionError
 from meshlab_spectral.files.region import Region
 from meshlab_spectral.filters.option_types import Options
-from meshlab_spectral.formats.document import Array, Indices, Part
+from meshlab_spectral.formats.document import Array, Indices, Part, joined
+from meshlab_spectral.formats.normals import area_vectors, vertex_normals
 
 Flags = NDArray[np.bool_]
 
@@ -49,7 +50,7 @@ def _in_box(region: Region, V: Array, F: Indices, quality: Array | None) -> Flag
 
 def _in_component(region: Region, V: Array, F: Indices, quality: Array | None) -> Flags:
     labels = _core.components(np.ascontiguousarray(V), np.ascontiguousarray(F, dtype=np.int32))
-    areas = np.linalg.norm(_area_vectors(V, F), axis=1)
+    areas = np.linalg.norm(area_vectors(V, F), axis=1)
     count = int(labels.max(initial=-1)) + 1
     # By area, descending; a triangle without any is in the component of its corners, or in none.
     sizes = np.bincount(labels[F[:, 0]] + 1, weights=areas, minlength=count + 1)[1:]
@@ -61,10 +62,7 @@ def _in_component(region: Region, V: Array, F: Indices, quality: Array | None) -
 
 
 def _where(region: Region, V: Array, F: Indices, quality: Array | None) -> Flags:
-    normals = np.zeros_like(V)
-    np.add.at(normals, F, _area_vectors(V, F)[:, None])
-    lengths = np.linalg.norm(normals, axis=1, keepdims=True)
-    columns = [V, np.divide(normals, lengths, out=normals, where=lengths > 0)]
+    columns = [V, vertex_normals(V, F)]
     names = ["x", "y", "z", "nx", "ny", "nz"]
     if quality is not None:
         columns.append(quality[:, None])
@@ -111,12 +109,6 @@ def _read_mask(path: Path) -> NDArray[np.float64]:
         raise InputError(f"the mask {path} is not one number for each vertex: {error}") from error
 
 
-def _area_vectors(V: Array, F: Indices) -> Array:
-    a, b, c = (V[F[:, corner]] for corner in range(3))
-    vectors: Array = np.cross(b - a, c - a)
-    return vectors
-
-
 # One for each field of Region.
 _VERTICES: Mapping[str, Callable[[Region, Array, Indices, Array | None], Flags]] = {
     "box": _in_box,
@@ -153,11 +145,7 @@ def restricted(parts: Sequence[Part], region: Region) -> list[Part | None]:
     ]
     if region.component is not None:  # counted over all meshes
         ends = np.cumsum([len(one.vertices) for one in parts])
-        V = np.vstack([one.vertices for one in parts])
-        F = np.vstack(
-            [one.faces + end - len(one.vertices) for one, end in zip(parts, ends, strict=True)]
-        )
-        flags = np.split(_in_component(region, V, F, None), ends[:-1])
+        flags = np.split(_in_component(region, *joined(parts), None), ends[:-1])
         chosen = [one & more for one, more in zip(chosen, flags, strict=True)]
     if not any(flags.any() for flags in chosen):
         given = ", ".join(f"{name} = {value}" for name, value in region.given().items())

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from typing import Any
 
 import numpy as np
@@ -21,22 +21,31 @@ def pieces(parts: Sequence[Part]) -> list[list[Part]]:
     """
     if len(parts) == 1:
         return [list(parts)]
-    above = list(range(len(parts)))
-
-    def first_of(one: int) -> int:
-        while above[one] != one:
-            above[one] = one = above[above[one]]
-        return one
-
+    pairs = [(number, number) for number in range(len(parts))]
     owner = dict[int, int]()  # the first part of each component
     for number, own in enumerate(_split(_core.components(*_arrays(parts)), parts)):
         for component in np.unique(own[own >= 0]).tolist():
-            first, second = sorted(map(first_of, (owner.setdefault(component, number), number)))
-            above[second] = first
+            pairs.append((owner.setdefault(component, number), number))
+    first = least_linked(pairs)
     groups: dict[int, list[Part]] = {}
     for number, part in enumerate(parts):
-        groups.setdefault(first_of(number), []).append(part)
+        groups.setdefault(first[number], []).append(part)
     return list(groups.values())
+
+
+def least_linked(pairs: Iterable[Sequence[int]]) -> dict[int, int]:
+    """Return the least of the numbers that pairs link each number with, directly or by others."""
+    above: dict[int, int] = {}
+
+    def least(one: int) -> int:
+        while above.setdefault(one, one) != one:
+            above[one] = one = above[above[one]]
+        return one
+
+    for pair in pairs:
+        first, second = sorted(map(least, pair))
+        above[second] = first
+    return {one: least(one) for one in above}
 
 
 def _arrays(parts: Sequence[Part]) -> tuple[Array, NDArray[np.int32]]:

@@ -9,6 +9,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from meshlab_spectral.errors import ArgumentError, ArrayError
 from meshlab_spectral.filters.mesh_objects import kind_of, known_kinds, remedy_for
+from meshlab_spectral.formats.normals import area_vectors
 
 
 def mesh_arrays(
@@ -134,8 +135,7 @@ def check_class(value: Any, expected: type[Any], source: str) -> None:
 
 def lumped_areas(V: NDArray[np.float64], F: NDArray[np.integer]) -> NDArray[np.float64]:
     """Return the n vertex areas, each a third of its triangles' area: the diagonal of D."""
-    a, b, c = (V[F[:, corner]] for corner in range(3))
-    areas = np.linalg.norm(np.cross(b - a, c - a), axis=1) / 2
+    areas = np.linalg.norm(area_vectors(V, F), axis=1)
     lumped = np.zeros(len(V))
     np.add.at(lumped, F, areas[:, None] / 3)
     return lumped

@@ -12,10 +12,17 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from meshlab_spectral.formats.normals import (
+    area_vectors,
+    following_face_normals,
+    following_normals,
+    vertex_normals,
+)
+
 Array = NDArray[np.float64]
 
-# Share of corners that stand against their faces, from which the orientation of the faces is not
-# that of the normals. Noise folds faces, too, but few.
+# Share of faces that stand against the normals of their corners, from which their orientation is
+# not that of the normals. Noise folds faces, too, but few.
 _MIXED = 0.1
 
 
@@ -30,8 +37,8 @@ def followed(
 ) -> dict[str, Any]:
     """Return those arrays in `data` that depend on positions, for vertices moved from V to X.
 
-    Normals are recomputed, on the side of the surface where they were; tangents are made
-    perpendicular to them. What has no direction in the new shape stays.
+    Normals turn as the surface does, those of files, too; tangents are made perpendicular to
+    them. What has no direction in the new shape stays.
 
     Parameters
     ----------
@@ -46,7 +53,6 @@ def followed(
     """
     at_faces = at == "faces"
     count = len(F) if at_faces else len(V)
-    corners: NDArray[np.integer] = np.arange(len(F))[:, None] if at_faces else F
     arrays = {name: np.asarray(values) for name, values in data.items()}
     vectors = {
         name: values
@@ -56,18 +62,20 @@ def followed(
         and values.shape[1] in (3, 4)
         and np.issubdtype(values.dtype, np.floating)
     }
-    before, after = _face_normals(V, F), _face_normals(X, F)
+    V, X = (np.ascontiguousarray(points, np.float64) for points in (V, X))
     moved: dict[str, Any] = {}
     for name, values in vectors.items():
         if name in normals or (_says(name, "normal") and values.shape[1] == 3):
-            moved[name] = _moved(values, corners, before, after)
+            moved[name] = _moved(values, V, X, F, at_faces)
     for names in _components(arrays, count):
         values = np.column_stack([arrays[name] for name in names])
-        columns = _moved(values, corners, before, after).T
+        columns = _moved(values, V, X, F, at_faces).T
         moved |= dict(zip(names, columns, strict=True))
     for name, values in vectors.items():
         if _says(name, "tangent") or _says(name, "binormal"):
-            moved[name] = _perpendicular(values, _sums(corners, after, 1.0, count))
+            moved[name] = _perpendicular(
+                values, area_vectors(X, F) if at_faces else vertex_normals(X, F)
+            )
     return moved
 
 
@@ -92,27 +100,20 @@ def _components(arrays: Mapping[str, Any], count: int) -> list[tuple[str, str, s
     return found
 
 
-def _face_normals(V: Array, F: NDArray[np.integer]) -> Array:
-    """Return m x 3 normals of faces, as long as twice their areas."""
-    a, b, c = (V[F[:, corner]] for corner in range(3))
-    return np.cross(b - a, c - a)
-
-
-def _sums(corners: NDArray[np.integer], normals: Array, signs: Any, count: int) -> Array:
-    """Return the sums over the corners at each of `count` vertices or faces."""
-    sums = np.zeros((count, 3))
-    np.add.at(sums, corners, np.broadcast_to(signs, corners.shape)[..., None] * normals[:, None])
-    return sums
-
-
 def _moved(
-    given: NDArray[Any], corners: NDArray[np.integer], before: Array, after: Array
+    given: NDArray[Any], V: Array, X: Array, F: NDArray[np.integer], at_faces: bool
 ) -> NDArray[Any]:
-    against = np.einsum("fkd,fd->fk", given[corners], before) < 0
-    share = against.mean() if against.size else 0.0
-    signs = np.where(against if _MIXED < share < 1 - _MIXED else share > 0.5, -1.0, 1.0)
-    sums = _sums(corners, after, signs, len(given))
-    return _units(sums, given)
+    normals, faces = np.ascontiguousarray(given, np.float64), F.astype(np.int64)
+    if at_faces:
+        moved = following_face_normals(V, X, faces, normals)
+    else:
+        corners = np.einsum("fkd,fd->fk", normals[faces], area_vectors(V, faces)) < 0
+        against = corners.sum(axis=1) > 1
+        if _MIXED < (against.mean() if against.size else 0.0) < 1 - _MIXED:
+            faces = np.where(against[:, None], faces[:, [0, 2, 1]], faces)
+            normals = _units(vertex_normals(V, faces), normals)
+        moved = following_normals(V, X, faces, normals)
+    return moved.astype(given.dtype)
 
 
 def _perpendicular(given: NDArray[Any], normals: Array) -> NDArray[Any]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from meshlab_spectral import _core
 from meshlab_spectral.formats.document import Array, Indices
@@ -31,6 +32,22 @@ def following_face_normals(
     """
     owners = np.arange(len(faces)) if owners is None else owners
     return _core.following_face_normals(before, after, faces, normals, owners)
+
+
+def area_vectors(V: Array, F: NDArray[np.integer]) -> Array:
+    """Return the m x 3 normals of triangles, as long as their areas."""
+    a, b, c = (V[F[:, corner]] for corner in range(3))
+    vectors: Array = np.cross(b - a, c - a) / 2
+    return vectors
+
+
+def vertex_normals(V: Array, F: NDArray[np.integer]) -> Array:
+    """Return the n x 3 normals of vertices, weighted by area: unit vectors, or zeros."""
+    sums = np.zeros_like(V)
+    np.add.at(sums, F, area_vectors(V, F)[:, None])
+    lengths = np.linalg.norm(sums, axis=1, keepdims=True)
+    normals: Array = np.divide(sums, lengths, out=sums, where=lengths > 0)
+    return normals
 
 
 def are_normals(vectors: Any, count: int) -> bool:

@@ -26,7 +26,7 @@ from meshlab_spectral.formats.document import (
     check_indices,
     check_vertices,
 )
-from meshlab_spectral.formats.normals import following_normals
+from meshlab_spectral.formats.normals import area_vectors, following_normals
 from meshlab_spectral.formats.polygons import triangles
 from meshlab_spectral.formats.text import Change, Lines, lines_of, whole, write_patched
 from meshlab_spectral.warned import Warned
@@ -234,9 +234,9 @@ def _normals(letters: bytes, table: Array, part: Part) -> int | None:
 
 def _agreement(normals: Array, part: Part) -> float:
     """Return how well vectors at the vertices agree with the shape's normals, up to their sign."""
-    V, F = part.vertices, part.faces
-    areas = np.cross(V[F[:, 1]] - V[F[:, 0]], V[F[:, 2]] - V[F[:, 0]])
-    given = normals[F].sum(axis=1)
+    given = normals[part.faces].sum(axis=1)
     length = np.linalg.norm(given, axis=1)
-    along = np.einsum("ij,ij->i", areas, given) / np.where(length > 0, length, 1)
+    along = np.einsum("ij,ij->i", area_vectors(part.vertices, part.faces), given) / np.where(
+        length > 0, length, 1
+    )
     return float(abs(along.sum()))

@@ -95,66 +95,46 @@ class _Turns:
         self._is_one_alone = False
 
     @contextlib.contextmanager
-    def together(self) -> Iterator[None]:
-        """Take part in what runs together."""
+    def taken(self, is_alone: bool) -> Iterator[None]:
+        """Take part in what runs together, or run alone."""
         with self._changed:
-            self._changed.wait_for(lambda: not self._is_one_alone)
+            self._changed.wait_for(lambda: not (self._is_one_alone or (is_alone and self._running)))
             self._running += 1
+            self._is_one_alone = is_alone
         try:
             yield
         finally:
             with self._changed:
                 self._running -= 1
-                self._changed.notify_all()
-
-    @contextlib.contextmanager
-    def alone(self) -> Iterator[None]:
-        """Run alone."""
-        with self._changed:
-            self._changed.wait_for(lambda: not self._running and not self._is_one_alone)
-            self._is_one_alone = True
-        try:
-            yield
-        finally:
-            with self._changed:
                 self._is_one_alone = False
                 self._changed.notify_all()
 
 
 def _submit(
-    client: Client, plugin: str, turns: _Turns, do: Callable[[Processes, Any], ResultT], job: Any
-) -> ResultT:
+    client: Client, plugin: str, turns: _Turns, do: Callable[[Processes, Any], Any], job: Any
+) -> Any:
     """Let a worker do a job.
 
     If the worker dies, Dask gives all jobs that it had to others, up to three times: those merely
     queued there, too. After that each of them gets one more try, alone. The death of a MeshLab
-    process is handled by the worker, see `task`.
+    process is handled by the worker, see `Processes.run`.
     """
-    try:
-        with turns.together():
-            result: ResultT = client.submit(_run, plugin, do, job, pure=False).result()
-            return result
-    except KilledWorker as error:
-        attempts = error.allowed_failures + 1
-    except Exception as error:
-        instead: ResultT = _instead(error, job)
-        return instead
-    try:
-        with turns.alone():
-            token = uuid.uuid4().hex
-            again: ResultT = client.submit(
-                _run_once, token, _run, plugin, do, job, pure=False
-            ).result()
-            return again
-    except (KilledWorker, _TriedError):
-        reason = (
-            f"{attempts} workers that had it were ended from outside, and one that did nothing "
-            "else: if memory is short there, give the workers more, or filter it by itself"
-        )
-        instead = job.failed(reason, attempts + 1)
-    except Exception as error:
-        instead = _instead(error, job)
-    return instead
+    attempts = 0
+    for run, is_alone in ((_run, False), (partial(_run_once, uuid.uuid4().hex, _run), True)):
+        try:
+            with turns.taken(is_alone):
+                return client.submit(run, plugin, do, job, pure=False).result()
+        except KilledWorker as error:
+            attempts = attempts or error.allowed_failures + 1
+        except _TriedError:
+            pass
+        except Exception as error:
+            return _instead(error, job)
+    return job.failed(
+        f"{attempts} workers that had it were ended from outside, and one that did nothing else: "
+        "if memory is short there, give the workers more, or filter it by itself",
+        attempts + 1,
+    )
 
 
 def _instead(error: Exception, job: Any) -> Any:
