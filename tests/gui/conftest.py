@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -44,19 +45,23 @@ def home(desktop: Desktop) -> Path:
     return Path(tempfile.mkdtemp(prefix="", dir=desktop.scratch))
 
 
+@pytest.fixture(scope="session")
+def installed(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The home of a user who has installed the plugin by the command."""
+    home = tmp_path_factory.mktemp("installed")
+    environment = {k: v for k, v in os.environ.items() if k != "XDG_DATA_HOME"}
+    subprocess.run(
+        [sys.executable, "-m", "meshlab_spectral.cli", "install"],
+        env={**environment, "HOME": str(home)},
+        check=True,
+    )
+    return home
+
+
 @pytest.fixture
-def install(home: Path) -> Callable[[], None]:
-    """Install the plugin for that user, as a user does."""
-
-    def run() -> None:
-        environment = {k: v for k, v in os.environ.items() if k != "XDG_DATA_HOME"}
-        subprocess.run(
-            [sys.executable, "-m", "meshlab_spectral.cli", "install"],
-            env={**environment, "HOME": str(home)},
-            check=True,
-        )
-
-    return run
+def install(home: Path, installed: Path) -> Callable[[], None]:
+    """Install the plugin for the new user."""
+    return lambda: shutil.copytree(installed, home, dirs_exist_ok=True) and None
 
 
 @pytest.fixture
