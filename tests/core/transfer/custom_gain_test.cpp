@@ -3,8 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <iomanip>
-#include <sstream>
 #include <string>
 #include <vector>
 
@@ -143,99 +141,6 @@ TEST(CustomGain, JumpsAreDetected) {
     EXPECT_TRUE(step.isConstantBeyondJumps());
     EXPECT_FALSE(custom("w < 1.3 ? 1 : 0.25 / w").isConstantBeyondJumps());
     EXPECT_EQ(custom("(w > 0.5) * (w < 2)").discontinuities().size(), 2U);
-}
-
-/// The built-in responses as expressions.
-struct Equivalent {
-    TransferFunctionOptions options;
-    std::string expression;
-};
-
-std::vector<Equivalent> equivalents() {
-    std::vector<Equivalent> all(7);
-    all[0].expression = "2^(-w^2/2)";
-    all[1].options.response = Response::Butterworth;
-    all[1].options.order = 4;
-    all[1].options.stopGain = 0.25;
-    all[1].expression = "0.25 + 0.75/sqrt(1 + w^8)";
-    all[2].options.response = Response::Ideal;
-    all[2].expression = "w <= 1";
-    all[3].options.type = FilterType::HighPass;
-    all[3].options.stopGain = 1.0;
-    all[3].options.passGain = 2.0;
-    all[3].expression = "1 + 2^(-1/(2*w^2))";
-    all[4].options.type = FilterType::BandPass;
-    all[4].options.stopGain = 1.0;
-    all[4].options.passGain = 1.5;
-    all[4].expression = "1 + 0.5*2^(-2*log2(w)^2)";
-    all[5].options.type = FilterType::BandStop;
-    all[5].options.response = Response::Butterworth;
-    all[5].expression = "1 - 1/sqrt(1 + (abs(w - 1/w)/(2^0.5 - 2^-0.5))^4)";
-    all[6].options.type = FilterType::BandPass;
-    all[6].options.response = Response::Ideal;
-    all[6].options.stopGain = 1.0;
-    all[6].options.passGain = 0.5;
-    all[6].expression = "abs(log2(w)) <= 0.5 ? 0.5 : 1";
-    return all;
-}
-
-TEST(CustomGain, FiltersLikeTheBuiltInResponses) {
-    const testing::Mesh mesh = testing::blob();
-    const double diagonal = boundingBoxDiagonal(mesh.V);
-    for (const Equivalent& equivalent : equivalents()) {
-        FilterOptions options;
-        options.transferFunction = equivalent.options;
-        options.featureSize = 0.3 * diagonal;
-        options.steps = 2;
-        options.evaluation.accuracy = 1e-9;
-        const Vertices expected = fractionalFilter(mesh.V, mesh.F, options).V;
-
-        options.transferFunction = {};
-        options.transferFunction.type = FilterType::Custom;
-        options.transferFunction.custom =
-            parseGain(equivalent.expression, cutoffFrequency(options.featureSize), {}).gain;
-        const Vertices actual = fractionalFilter(mesh.V, mesh.F, options).V;
-        EXPECT_LT((actual - expected).rowwise().norm().maxCoeff(), 1e-8 * diagonal)
-            << equivalent.expression;
-    }
-}
-
-TEST(CustomGain, PointsFilterLikeTheResponseTheySample) {
-    const testing::Mesh mesh = testing::blob();
-    const double diagonal = boundingBoxDiagonal(mesh.V);
-    FilterOptions options;
-    options.featureSize = 0.3 * diagonal;
-    options.steps = 2;
-    for (const FilterType type :
-         {FilterType::LowPass, FilterType::HighPass, FilterType::BandPass, FilterType::BandStop})
-        for (const Response response : {Response::Gaussian, Response::Butterworth}) {
-            TransferFunctionOptions builtIn;
-            builtIn.type = type;
-            builtIn.response = response;
-            builtIn.passGain = 1.6;
-            builtIn.stopGain = 0.4;  // points have no gain of 0
-            options.transferFunction = builtIn;
-            const Vertices expected = fractionalFilter(mesh.V, mesh.F, options).V;
-
-            const TransferFunction F(builtIn, cutoffFrequency(options.featureSize));
-            std::ostringstream points;
-            points << std::setprecision(12);
-            constexpr int kCount = 1000, kPerOctave = 256;
-            for (int i = -kCount; i <= kCount; ++i) {
-                const double octaves = -static_cast<double>(i) / kPerOctave;
-                const double size = options.featureSize * std::exp2(octaves);
-                points << (i > -kCount ? ", " : "") << size << ":" << F(cutoffFrequency(size));
-            }
-            const CustomGain equalizer = parseGain(points.str(), 1.0, {diagonal, 1.0});
-            options.transferFunction = {};
-            options.transferFunction.type = FilterType::Custom;
-            options.transferFunction.custom = equalizer.gain;
-            EXPECT_NEAR(equalizer.cutoff, cutoffFrequency(options.featureSize), 1e-3);
-            const FilterResult actual = fractionalFilter(mesh.V, mesh.F, options);
-            EXPECT_TRUE(actual.accuracyReached);
-            EXPECT_LT((actual.V - expected).rowwise().norm().maxCoeff(), 1e-6 * diagonal)
-                << static_cast<int>(type) << ", " << static_cast<int>(response);
-        }
 }
 
 TEST(CustomGain, UnsupportedJumpsAreRejectedBeforeAnyWork) {

@@ -13,7 +13,6 @@ namespace spectral {
 namespace {
 
 constexpr double kInf = std::numeric_limits<double>::infinity();
-const double kHalfPower = 1.0 / std::sqrt(2.0);
 
 TransferFunctionOptions options(FilterType type, Response response) {
     TransferFunctionOptions o;
@@ -27,58 +26,6 @@ TEST(TransferFunction, LowPassPassesZeroAndStopsInfinity) {
         const TransferFunction F(options(FilterType::LowPass, r), 3.0);
         EXPECT_EQ(F(0.0), 1.0);
         EXPECT_EQ(F(kInf), 0.0);
-    }
-}
-
-TEST(TransferFunction, HighPassIsTheLowPassAtTheInverseFrequency) {
-    for (const Response r : {Response::Gaussian, Response::Butterworth}) {
-        const TransferFunction low(options(FilterType::LowPass, r), 2.0);
-        const TransferFunction high(options(FilterType::HighPass, r), 2.0);
-        EXPECT_EQ(high(0.0), 0.0);
-        EXPECT_EQ(high(kInf), 1.0);
-        for (const double x : {0.1, 0.7, 1.0, 1.9, 12.0})
-            EXPECT_NEAR(high(2.0 * x), low(2.0 / x), 1e-15);
-    }
-}
-
-TEST(TransferFunction, SmoothResponsesAreMinus3DecibelsAtTheirCutoff) {
-    for (const Response r : {Response::Gaussian, Response::Butterworth}) {
-        EXPECT_NEAR(TransferFunction(options(FilterType::LowPass, r), 5.0)(5.0), kHalfPower, 1e-15);
-        EXPECT_NEAR(TransferFunction(options(FilterType::HighPass, r), 5.0)(5.0), kHalfPower,
-                    1e-15);
-    }
-}
-
-TEST(TransferFunction, BandIsMinus3DecibelsHalfItsWidthFromTheCentre) {
-    for (const Response r : {Response::Gaussian, Response::Butterworth})
-        for (const double width : {0.25, 1.0, 3.0}) {
-            TransferFunctionOptions o = options(FilterType::BandPass, r);
-            o.bandWidth = width;
-            const TransferFunction F(o, 2.0);
-            EXPECT_NEAR(F(2.0), 1.0, 1e-15);
-            EXPECT_NEAR(F(2.0 * std::exp2(0.5 * width)), kHalfPower, 1e-14);
-            EXPECT_NEAR(F(2.0 * std::exp2(-0.5 * width)), kHalfPower, 1e-14);
-            EXPECT_EQ(F(0.0), 0.0);
-            EXPECT_EQ(F(kInf), 0.0);
-        }
-}
-
-TEST(TransferFunction, BandStopIsOneMinusTheBandPass) {
-    for (const Response r : {Response::Gaussian, Response::Butterworth, Response::Ideal}) {
-        const TransferFunction pass(options(FilterType::BandPass, r), 2.0);
-        const TransferFunction stop(options(FilterType::BandStop, r), 2.0);
-        for (const double omega : {0.0, 0.5, 1.5, 2.0, 2.8, 40.0})
-            EXPECT_NEAR(stop(omega), 1.0 - pass(omega), 1e-15);
-    }
-}
-
-TEST(TransferFunction, ButterworthFollowsItsFormulaForEveryOrder) {
-    for (const int order : {1, 2, 5, 64}) {
-        TransferFunctionOptions o = options(FilterType::LowPass, Response::Butterworth);
-        o.order = order;
-        const TransferFunction F(o, 1.0);
-        for (const double x : {0.2, 0.9, 1.1, 3.0})
-            EXPECT_NEAR(F(x), 1.0 / std::sqrt(1.0 + std::pow(x, 2.0 * order)), 1e-15);
     }
 }
 
@@ -101,16 +48,6 @@ TEST(TransferFunction, SmoothResponsesHaveNoDiscontinuity) {
     TransferFunctionOptions flat = options(FilterType::BandPass, Response::Ideal);
     flat.passGain = flat.stopGain = 1.0;
     EXPECT_TRUE(TransferFunction(flat, 1.0).discontinuities().empty());
-}
-
-TEST(TransferFunction, GainsScaleAndShiftThePrototype) {
-    TransferFunctionOptions o = options(FilterType::BandPass, Response::Gaussian);
-    o.stopGain = 1.0;
-    o.passGain = 2.5;
-    const TransferFunction F(o, 2.0);
-    EXPECT_NEAR(F(2.0), 2.5, 1e-15);
-    EXPECT_EQ(F(0.0), 1.0);
-    EXPECT_NEAR(F(2.0 * std::sqrt(2.0)), 1.0 + 1.5 * kHalfPower, 1e-14);
 }
 
 TEST(TransferFunction, FractionalPowersMultiplyToTheWhole) {
