@@ -23,7 +23,7 @@ def files(folder: Path, *names: str) -> None:
 
 
 def names(found: Iterable[Input], folder: Path) -> list[str]:
-    return [Path(file.place).relative_to(folder).as_posix() for file in found]
+    return [Path(file.location).relative_to(folder).as_posix() for file in found]
 
 
 def test_a_folder_gives_its_meshes_sorted_without_hidden_files(tmp_path: Path) -> None:
@@ -111,10 +111,10 @@ def test_urls_are_found_as_files_are() -> None:
     for name in ("/scans/a.ply", "/scans/b.obj", "/scans/.c.ply", "/scans/deep/d.ply"):
         memory.pipe(name, b"")
     try:
-        flat = [file.place for file in find_inputs(["memory://scans"])]
+        flat = [file.location for file in find_inputs(["memory://scans"])]
         assert flat == ["memory:///scans/a.ply", "memory:///scans/b.obj"]
         deep = find_inputs(["memory://scans"], recursive=True)
-        assert (deep[-1].place, deep[-1].folder) == ("memory:///scans/deep/d.ply", "deep")
+        assert (deep[-1].location, deep[-1].folder) == ("memory:///scans/deep/d.ply", "deep")
         assert len(find_inputs(["memory://scans/*.ply"])) == 2
         with pytest.raises(InputError, match="does not exist"):
             find_inputs(["memory://scans/e.ply"])

@@ -130,7 +130,7 @@ def test_outputs_differ_and_stay_in_their_folder(
     outputs = plan_outputs(files, "/out", pattern)
     assert len({output.target for output in outputs}) == len(files)
     for file, output in zip(files, outputs, strict=True):
-        assert output.source == file.place
+        assert output.source == file.location
         assert posixpath.normpath(output.target) == output.target
         assert output.target.startswith("/out/")
         assert output.target.endswith(".ply")

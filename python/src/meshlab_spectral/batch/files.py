@@ -113,8 +113,8 @@ def _planned(
     settings = Settings(**own)
     is_script = settings.script and options is None and not of_filter
     chosen = None if is_script else table.from_call(options, of_filter)
-    places = [inputs] if isinstance(inputs, str | Path) else inputs
-    return run_batch(plan_batch(places, output, settings, chosen), Tally())
+    locations = [inputs] if isinstance(inputs, str | Path) else inputs
+    return run_batch(plan_batch(locations, output, settings, chosen), Tally())
 
 
 def run_batch(batch: Batch, tally: Tally) -> Generator[FileResult, None, None]:

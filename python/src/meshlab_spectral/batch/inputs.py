@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from meshlab_spectral.batch.storage import file_system, is_url, located
+from meshlab_spectral.batch.storage import absolute_location, file_system, is_url
 from meshlab_spectral.errors import InputError
 from meshlab_spectral.files.extensions import SEARCHED
 from meshlab_spectral.files.whole_files import resolved
@@ -27,14 +27,14 @@ from meshlab_spectral.formats.names import (
 class Input:
     """An input file; an unreadable one is an input, too, and its job fails."""
 
-    place: str  # absolute path with "/", or URL
+    location: str  # absolute path with "/", or URL
     folder: str = ""  # relative to the one given by the user; "" for that one itself
     is_free_surfer: bool = False  # a surface of FreeSurfer, whatever its extension
 
     @property
     def name(self) -> str:
         """File name without folders."""
-        return posixpath.basename(self.place)
+        return posixpath.basename(self.location)
 
 
 def find_inputs(
@@ -56,19 +56,19 @@ def find_inputs(
             hint = "" if recursive else "; --recursive searches its subfolders, too"
             raise InputError(f"{argument} holds no mesh that can be read{hint}")
         for file in of_this:
-            key = file.place if is_url(file.place) else os.path.realpath(file.place)
+            key = file.location if is_url(file.location) else os.path.realpath(file.location)
             found.setdefault(key, file)
     return list(found.values())
 
 
 def _from_argument(argument: str, recursive: bool, outputs: set[Path]) -> Iterator[Input]:
-    place = located(argument)
-    if is_url(place):
-        yield from _from_url(place, recursive)
-    elif os.path.lexists(place):
-        yield from _from_path(Path(place), recursive, outputs)
-    elif glob.has_magic(place):
-        matches = sorted(glob.glob(place, recursive=recursive))  # noqa: PTH207 (hidden files)
+    location = absolute_location(argument)
+    if is_url(location):
+        yield from _from_url(location, recursive)
+    elif os.path.lexists(location):
+        yield from _from_path(Path(location), recursive, outputs)
+    elif glob.has_magic(location):
+        matches = sorted(glob.glob(location, recursive=recursive))  # noqa: PTH207 (hidden files)
         if not matches:
             raise InputError(f"{argument} matches no file: check the pattern and the folder")
         for match in matches:

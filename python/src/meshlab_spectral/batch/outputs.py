@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from meshlab_spectral.batch.inputs import Input
-from meshlab_spectral.batch.storage import is_url, joined
+from meshlab_spectral.batch.storage import is_url, location_in
 from meshlab_spectral.errors import FormatError, InputError
 from meshlab_spectral.files.extensions import FALLBACK, POINTS_ONLY, WRITABLE
 from meshlab_spectral.formats.names import ending_of
@@ -54,7 +54,7 @@ def plan_outputs(
             )
     outputs = [_output(file, folder, pattern, ending) for file in inputs]
     _refuse_collisions(outputs)
-    refuse_inputs((output.target for output in outputs), (file.place for file in inputs))
+    refuse_inputs((output.target for output in outputs), (file.location for file in inputs))
     return outputs
 
 
@@ -86,11 +86,11 @@ def _output(file: Input, folder: str, pattern: str, ending: str | None) -> Outpu
     if ending is None:
         kept = own.lower() in (WRITABLE - POINTS_ONLY) | PATCHED or file.is_free_surfer
         ending = own if kept else FALLBACK
-    parent = posixpath.basename(posixpath.dirname(file.place))
+    parent = posixpath.basename(posixpath.dirname(file.location))
     made = pattern.format(stem=stem, ending=own, folder=parent)
     _check_name(made, pattern)  # a field may be empty: no extension, or the root folder
     name = posixpath.join(file.folder, f"{made}.{ending}" if ending else made)
-    return Output(file.place, name, joined(folder, name))
+    return Output(file.location, name, location_in(folder, name))
 
 
 def _refuse_collisions(outputs: Sequence[Output]) -> None:
@@ -114,23 +114,23 @@ def _refuse_collisions(outputs: Sequence[Output]) -> None:
 def refuse_inputs(targets: Iterable[str], sources: Iterable[str]) -> None:
     """Raise InputError if an output is one of the inputs, even under another name."""
     sources = list(sources)
-    places = {source for source in sources if is_url(source)}
+    locations = {source for source in sources if is_url(source)}
     files = {key for source in sources for key in _identities(source)}
     for target in targets:
-        if target in places or not files.isdisjoint(_identities(target)):
+        if target in locations or not files.isdisjoint(_identities(target)):
             raise InputError(
                 f"{target} is an input itself and would be lost: give the output another name or "
                 "another folder"
             )
 
 
-def _identities(place: str) -> list[object]:
+def _identities(location: str) -> list[object]:
     """Return keys that identify a file under any name, through hard and symbolic links."""
-    if is_url(place):
+    if is_url(location):
         return []
-    known: list[object] = [os.path.realpath(place)]
+    known: list[object] = [os.path.realpath(location)]
     try:
-        status = Path(place).stat()
+        status = Path(location).stat()
     except OSError:
         return known
     return [*known, (status.st_dev, status.st_ino)]

@@ -55,7 +55,7 @@ def plan_batch(
     settings.check_workers()
     resume, overwrite = settings.resume, settings.overwrite
     work, described = _work(options, settings.script)
-    folder = storage.located(str(output))
+    folder = storage.absolute_location(str(output))
     if not storage.is_url(folder) and Path(folder).is_file():
         raise InputError(f"the output {output} is a file: name a folder for the outputs")
     report_path = _report_path(folder, settings.report)
@@ -154,12 +154,12 @@ def _inputs(
 ) -> list[Input]:
     """Find the inputs, excluding outputs of an earlier run."""
     leave_out = [report]
-    given = {storage.located(str(place)) for place in inputs}
+    searched = {storage.absolute_location(str(location)) for location in inputs}
     if not storage.is_url(folder):
         leave_out += [Path(folder, name) for name in records]
-        if folder not in given:
+        if folder not in searched:
             leave_out.append(Path(folder))
-    return find_inputs([str(place) for place in inputs], recursive, leave_out)
+    return find_inputs([str(location) for location in inputs], recursive, leave_out)
 
 
 def _refuse_to_replace(targets: Sequence[str], begun: float | None, hint: str) -> None:

@@ -56,15 +56,17 @@ def plan_spectra(
     if report == table:
         raise InputError(f"the report {report} is also the table: choose another with --report")
     check_report(report)
-    places = [
-        file.place for file in find_inputs(map(str, inputs), settings.recursive, [table, report])
+    locations = [
+        file.location for file in find_inputs(map(str, inputs), settings.recursive, [table, report])
     ]
-    refuse_inputs([str(table)], places)
+    refuse_inputs([str(table)], locations)
     if table.is_file() and table.stat().st_size and not _is_table(table):
         raise InputError(f"{table} exists and is not a table of spectra: choose another name")
     described = options.as_dict()
     work = {"task": options.TABLE, "options": described}
-    jobs = [Job(place, None, place, work, described, settings.timeout) for place in places]
+    jobs = [
+        Job(location, None, location, work, described, settings.timeout) for location in locations
+    ]
     proved = (
         proved_done(jobs, done_records(read_report(report)), versions()) if settings.resume else {}
     )

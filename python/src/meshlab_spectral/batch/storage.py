@@ -32,21 +32,21 @@ _PART = 2**20  # bytes per read
 _PARTIAL = re.compile(r"\..+\.[a-z0-9]{8}\.partial")
 
 
-def is_url(place: str) -> bool:
-    """Whether a place is a URL, not a path."""
-    return bool(_SCHEME.match(place))
+def is_url(location: str) -> bool:
+    """Whether a location is a URL, not a path."""
+    return bool(_SCHEME.match(location))
 
 
-def located(place: str) -> str:
-    """Resolve a place to an absolute path with "/", or to a URL other than file://."""
-    if place.startswith("file://"):
+def absolute_location(location: str) -> str:
+    """Resolve a location to an absolute path with "/", or to a URL other than file://."""
+    if location.startswith("file://"):
         from urllib.request import url2pathname  # a slow import
 
-        place = url2pathname(urlsplit(place).path)
-    return place if is_url(place) else Path(place).absolute().as_posix()
+        location = url2pathname(urlsplit(location).path)
+    return location if is_url(location) else Path(location).absolute().as_posix()
 
 
-def joined(folder: str, name: str) -> str:
+def location_in(folder: str, name: str) -> str:
     """Join a folder and a relative name."""
     return f"{folder.rstrip('/')}/{name}" if is_url(folder) else Path(folder, name).as_posix()
 
@@ -76,92 +76,92 @@ def digest(path: Path) -> str:
         return _digest_of(file)
 
 
-def digest_at(place: str) -> str | None:
+def digest_at(location: str) -> str | None:
     """Return the SHA-256 of the file at a path or URL; None if it cannot be read."""
     try:
-        if not is_url(place):
-            return digest(Path(place)) if Path(place).is_file() else None
-        fs, path = file_system(place)
+        if not is_url(location):
+            return digest(Path(location)) if Path(location).is_file() else None
+        fs, path = file_system(location)
         with fs.open(path, "rb") as file:
             return _digest_of(file)
     except OSError:
         return None
 
 
-def existing(places: list[str]) -> list[str]:
-    """Return the places that exist, as files or otherwise."""
-    return [place for place in places if _exists(place)]
+def existing(locations: list[str]) -> list[str]:
+    """Return the locations that exist, as files or otherwise."""
+    return [location for location in locations if _exists(location)]
 
 
-def _exists(place: str) -> bool:
-    if not is_url(place):
-        return os.path.lexists(place)
-    fs, path = file_system(place)
+def _exists(location: str) -> bool:
+    if not is_url(location):
+        return os.path.lexists(location)
+    fs, path = file_system(location)
     return bool(fs.exists(path))
 
 
 @contextlib.contextmanager
-def reading(place: str, folder: Path) -> Iterator[Path]:
+def reading(location: str, folder: Path) -> Iterator[Path]:
     """Yield a local file to read: the one at a path, or a copy of the one at a URL.
 
     The copy is made in `folder`. Raises MeshFileError when it is missing or cannot be read.
     """
-    if not is_url(place):
-        check_source(Path(place))
-        yield Path(place)
+    if not is_url(location):
+        check_source(Path(location))
+        yield Path(location)
         return
-    fs, path = file_system(place)
+    fs, path = file_system(location)
     with tempfile.TemporaryDirectory(dir=folder) as scratch_folder:
         copy = Path(scratch_folder, posixpath.basename(path))
         try:
             fs.get_file(path, str(copy))
         except FileNotFoundError:
-            raise MeshFileError(f"{place} does not exist: check the URL", "missing") from None
+            raise MeshFileError(f"{location} does not exist: check the URL", "missing") from None
         except OSError as error:
-            raise MeshFileError(f"{place} cannot be read ({error})", "no_access") from error
+            raise MeshFileError(f"{location} cannot be read ({error})", "no_access") from error
         yield copy
 
 
 @contextlib.contextmanager
-def writing(place: str, overwrite: bool, folder: Path) -> Iterator[Path]:
-    """Yield a scratch file to write; on success, move it and its side files into place.
+def writing(location: str, overwrite: bool, folder: Path) -> Iterator[Path]:
+    """Yield a scratch file to write; on success, move it and its side files into their location.
 
     Folders are created as needed. See `whole_files.writing_whole`; a URL, however, is
     uploaded from a scratch file in `folder`, and an existing file only detected shortly before.
-    Raises MeshFileError when the place cannot be written to, or exists and must not be overwritten.
+    Raises MeshFileError when it cannot be written to, or exists and must not be overwritten.
     """
-    if not is_url(place):
+    if not is_url(location):
         try:
-            Path(place).parent.mkdir(parents=True, exist_ok=True)
+            Path(location).parent.mkdir(parents=True, exist_ok=True)
         except OSError as error:
             raise MeshFileError(
-                f"the folder of {place} cannot be created ({error.strerror})"
+                f"the folder of {location} cannot be created ({error.strerror})"
             ) from error
-        with writing_whole(Path(place), overwrite) as scratch:
+        with writing_whole(Path(location), overwrite) as scratch:
             yield scratch
         return
-    fs, path = file_system(place)
+    fs, path = file_system(location)
     with tempfile.TemporaryDirectory(dir=folder) as scratch_folder:
         scratch = Path(scratch_folder, posixpath.basename(path))
         yield scratch
         if not scratch.is_file():
-            raise MeshFileError(f"MeshLab wrote nothing for {place}: choose another format")
+            raise MeshFileError(f"MeshLab wrote nothing for {location}: choose another format")
         try:
-            if not overwrite and fs.exists(path) and digest_at(place) != digest(scratch):
-                raise MeshFileError(why_kept(place))
+            if not overwrite and fs.exists(path) and digest_at(location) != digest(scratch):
+                raise MeshFileError(why_kept(location))
             # The mesh last, when everything it refers to is in place.
             for file in [*side_files(scratch), scratch]:
                 name = file.relative_to(scratch_folder).as_posix()
                 _upload(fs, file, posixpath.join(posixpath.dirname(path), name))
         except OSError as error:
-            raise MeshFileError(f"{place} cannot be written ({error})") from error
+            raise MeshFileError(f"{location} cannot be written ({error})") from error
 
 
-def sibling(place: str, name: str) -> str:
+def sibling(location: str, name: str) -> str:
     """Resolve a name relative to the folder of another file."""
-    if is_url(place):
-        return f"{place.rpartition('/')[0]}/{name}"
-    return str(resolved(Path(place)).parent / name)  # follow symbolic links, as in writing
+    if is_url(location):
+        return f"{location.rpartition('/')[0]}/{name}"
+    return str(resolved(Path(location)).parent / name)  # follow symbolic links, as in writing
 
 
 def tidy(folder: str) -> None:
