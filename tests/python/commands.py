@@ -19,6 +19,7 @@ import pymeshlab
 
 COMMAND = [sys.executable, "-m", "meshlab_spectral.cli"]
 _WIDE = {"COLUMNS": "200"}
+_SIZE = {"COLUMNS", "LINES"}  # of the terminal, which help alone reads when it is shown
 PRECIOUS = b"precious bytes of a file that was here before\n"
 
 
@@ -49,10 +50,10 @@ class Worker:
         return self._process.poll() is None and self._settings == _python_settings()
 
     def run(
-        self, words: list[str], folder: Path, timeout: float
+        self, words: list[str], folder: Path, timeout: float, size: dict[str, str]
     ) -> subprocess.CompletedProcess[str]:
-        """Run a command with the environment of now."""
-        environment = {**os.environ, **_WIDE}
+        """Run a command with the environment of now, and a terminal's size."""
+        environment = {**os.environ, **_WIDE, **size}
         request = {"words": words, "environment": environment, "folder": str(folder)}
         assert self._process.stdin is not None
         assert self._process.stdout is not None
@@ -102,8 +103,8 @@ def command(
 ) -> subprocess.CompletedProcess[str]:
     """Run a command; with variables of the environment, which imports may read, from scratch."""
     words = [str(argument) for argument in arguments]
-    if not environment and (forking := worker()) is not None:
-        return forking.run(words, folder or Path.cwd(), timeout)
+    if environment.keys() <= _SIZE and (forking := worker()) is not None:
+        return forking.run(words, folder or Path.cwd(), timeout, environment)
     return subprocess.run(
         [*COMMAND, *words],
         cwd=folder,

@@ -115,7 +115,7 @@ def cases() -> list[tuple[str, int]]:
     asked = os.environ.get(VARIABLE)
     names = sorted(KINDS)
     if not asked:  # a few of every run of the tests
-        return [(name, 0) for name in names[:: len(names) // 4]]
+        return [(name, 0) for name in names[:: len(names) // 2]]
     count = max(len(names), int(asked) // 100)
     return [(names[k % len(names)], k // len(names)) for k in range(count)]
 
