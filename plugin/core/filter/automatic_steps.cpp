@@ -61,24 +61,30 @@ double largestButNegligible(const Eigen::VectorXd& length, const Eigen::VectorXd
 
 /// Limit of the shapes Y_1, Y_2, Y_4, ..., and how far the last one is from it.
 ///
-/// All constants are fits to six meshes at low-passes of 1 to 30 %, bands and boosts, and hold for
-/// nine others (tests/benchmarks, Convergence of the steps).
+/// All constants are fits to eleven meshes at 1, 5, 15 and 30 %, low-passes, bands and boosts, and
+/// hold for eight others (tests/benchmarks, Convergence of the steps).
 class Limit {
   public:
+    /// @param X   the input.
     /// @param E1  the shape that Y_1 is compared with.
-    Limit(Vertices E1, const LaplacianBuilder& laplacians)
-        : laplacians_(laplacians), Y_(std::move(E1)) {}
+    Limit(const Vertices& X, Vertices E1, const LaplacianBuilder& laplacians)
+        : X_(X), laplacians_(laplacians), Y_(std::move(E1)) {}
 
     /// @param quarter  log areas around the vertices of F^(1/4)(sqrt(A)) X.
     void addFirst(Vertices Y, const Eigen::ArrayXd& quarter) {
         const Eigen::ArrayXd growth =
             logAreasAround(laplacians_.current().W, laplacians_.faces(), Y) - quarter;
         replace({}, std::move(Y));
-        // The distance is an error of first order, whose ratio to that of second order grows as
-        // areas change faster towards the end of the step. What has gone in the first quarter is
-        // noise. The distance bounds the error.
-        constexpr double kUsual = 0.09;
-        errors_.array() *= (kUsual * (growth.min(0.0) * -2.0 + growth.max(0.0)).exp()).min(1.0);
+        // The distance is an error of first order; that of second order is to it as the distance is
+        // to the displacement, or more where areas shrink ever faster, which grow ever more slowly
+        // where they grow. What has gone in the first quarter is noise.
+        constexpr double kMostOfGrowing = 0.1;
+        const Eigen::ArrayXd moved = distances(Y_, X_).array();
+        for (Index i = 0; i < errors_.size(); ++i) {
+            const double most = growth[i] < 0.0 ? 1.0 : kMostOfGrowing,
+                         change = errors_[i] * std::exp(std::max(0.0, -growth[i]));
+            errors_[i] *= change < most * moved[i] ? change / moved[i] : most;
+        }
         error_ = bound_ = largestOf(errors_);
     }
 
@@ -94,13 +100,15 @@ class Limit {
                                   : distance_;
         replace(std::move(E), std::move(Y));
         shrinking_ = distance_ > 0.0 ? before / distance_ : kSecondOrder;
-        // The distance bounds the error where it does not shrink.
-        constexpr double kUsualSecond = 0.5, kUsualLater = 0.8, kDecay = 0.4;
-        errors_ *=
-            std::min(1.0, (hasLike ? kUsualLater : kUsualSecond) / std::pow(shrinking_, kDecay));
+        // Without extrapolation errors shrink no faster than those of second order, whatever the
+        // first distances. The distance bounds the error where it does not shrink.
+        constexpr double kUsualSecond = 0.25, kUsualLater = 0.8, kDecay = 0.4;
+        const double rate = isExtrapolated_ ? shrinking_ : std::min(shrinking_, kSecondOrder);
+        errors_ *= hasLike ? std::min(1.0, kUsualLater / std::pow(rate, kDecay)) : kUsualSecond;
         error_ = largestOf(errors_);
-        constexpr double kSafety = 1.5;  // estimates scatter by a factor of two
-        bound_ = kSafety * error_;
+        // Estimates scatter, those of extrapolated shapes by a factor of two.
+        constexpr double kSafety = 1.25, kSafetyOfExtrapolated = 1.5;
+        bound_ = (isExtrapolated_ ? kSafetyOfExtrapolated : kSafety) * error_;
     }
 
     const Vertices& shape() const { return isExtrapolated_ ? E_ : Y_; }
@@ -130,6 +138,7 @@ class Limit {
         return largestButNegligible(isKept_.select(lengths, 0.0), laplacians_.inputMass());
     }
 
+    const Vertices& X_;
     const LaplacianBuilder& laplacians_;
     Vertices Y_, E_;                                // E_ is extrapolated; empty if it is Y_
     Eigen::VectorXd errors_;                        // n, estimated, where parts collapse, too
@@ -187,7 +196,7 @@ AutomaticSteps automaticSteps(LaplacianBuilder& laplacians, StepEvaluator& evalu
             first = predictFirst(0.5 * kFirst, kFirst);
         }
     }
-    Limit limit(std::move(first[0]), laplacians);
+    Limit limit(X, std::move(first[0]), laplacians);
     const Eigen::ArrayXd quarterAreas =
         logAreasAround(laplacians.current().W, laplacians.faces(), first[2]);
     // Of the second pass, by interpolation.

@@ -45,11 +45,12 @@ struct AutomaticSteps {
 /// series in 1/K whose leading term is quadratic, so from K = 8 on Richardson extrapolation
 ///     E_K = Y_K + (Y_K - Y_K/2) / 3
 /// removes it; before, E_K = Y_K. A single step is compared with the paper's step, which comes from
-/// the same Krylov space as its half step: their distance is the error of a method of first order.
-/// That of the midpoint rule is a tenth of it, times the square of the ratio by which the areas
-/// change in the last three quarters of the step. Later, the distance from E_K/2 to E_K and the
-/// rate at which such distances shrink tell the error of E_K. Most runs end after one pass (two
-/// evaluations) or two passes (six). All earlier passes together cost as much as the last.
+/// the same Krylov space as its half step: their distance d is an error of first order. That of the
+/// midpoint rule is d times the ratio of d to the displacement, times the ratio by which areas
+/// shrink in the last three quarters of the step; where they grow, at most d / 10. Later, the
+/// distance from E_K/2 to E_K and the rate at which such distances shrink tell the error of E_K.
+/// Most runs end after one pass (two evaluations) or two passes (six). All earlier passes together
+/// cost as much as the last.
 ///
 /// Where parts of the surface collapse, the flow is singular and passes converge slowly. These
 /// parts do not hold up the rest: passes end when the error everywhere else is within the

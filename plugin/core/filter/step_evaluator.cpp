@@ -14,8 +14,8 @@ namespace {
 /// Even a signal that is negligible compared with the shape gets two digits.
 constexpr double kCoarsestAccuracy = 1e-2;
 
-/// Relative error of a predicted shape: that of the result, but at least three digits. It affects
-/// the result only through the change of the Laplacian, but that change is large where parts shrink
+/// Relative error of a predicted shape: that of its step, but at least three digits. It affects the
+/// result only through the change of the Laplacian, but that change is large where parts shrink
 /// away.
 constexpr double kPredictionAccuracy = 1e-3;
 
@@ -61,7 +61,9 @@ Evaluation StepEvaluator::operator()(const Laplacian& surface, const Signals& X,
 
 Evaluation StepEvaluator::predict(const Laplacian& surface, const Signals& X,
                                   const std::vector<double>& alphas, const Progress& progress) {
-    return evaluate(surface, X, alphas, std::min(accuracy_, kPredictionAccuracy), progress);
+    const double step = std::min(1.0, 2.0 * alphas.front());  // which it is in the middle of
+    return evaluate(surface, X, alphas,
+                    std::min(accuracyOfStep(accuracy_, step), kPredictionAccuracy), progress);
 }
 
 Evaluation StepEvaluator::evaluate(const Laplacian& surface, const Signals& X,

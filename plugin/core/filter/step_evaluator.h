@@ -52,6 +52,7 @@ class StepEvaluator {
 
     /// The same for several powers, with at least three digits: for shapes that only provide
     /// Laplacians and do not enter the result themselves.
+    /// @param alphas  the first is half of a step, or the whole filter.
     Evaluation predict(const Laplacian& surface, const Signals& X,
                        const std::vector<double>& alphas, const Progress& progress);
 

@@ -5,7 +5,6 @@
 #include <limits>
 
 #include "core/krylov/rows.h"
-#include "core/support/memory.h"
 #include "core/support/threads.h"
 
 namespace spectral {
@@ -106,12 +105,7 @@ Products::Products(const Laplacian& laplacian, double central)
       central_(central),
       largest_(std::max(eigenvalueBound(laplacian), std::numeric_limits<double>::min())),
       order_(Eigen::VectorXi::LinSpaced(laplacian.D.size(), 0,
-                                        static_cast<int>(laplacian.D.size()) - 1)) {
-    // A series needs two terms, and a sum and a result for each of three gains.
-    constexpr double kBytesPerVertex = 4 * sizeof(float) * (2 + 3) + 3 * sizeof(double) * 3;
-    const Index n = laplacian.D.size();
-    requireMemory(kBytesPerVertex * static_cast<double>(n), n);
-}
+                                        static_cast<int>(laplacian.D.size()) - 1)) {}
 
 Eigen::ArrayXd Products::apply(const Eigen::VectorXd&, const double* Q, int columns,
                                double* Y) const {

@@ -73,7 +73,6 @@ class Products final : public KrylovOperator {
   public:
     /// @param laplacian  kept by reference.
     /// @param central    frequency around which F varies.
-    /// @throws Error  with code OutOfMemory, when a series of products does not fit.
     Products(const Laplacian& laplacian, double central);
 
     Eigen::ArrayXd apply(const Eigen::VectorXd& D, const double* Q, int columns,

@@ -10,6 +10,7 @@
 
 #include "core/krylov/chebyshev_series.h"
 #include "core/krylov/rows.h"
+#include "core/support/memory.h"
 #include "core/support/threads.h"
 
 namespace spectral {
@@ -409,6 +410,11 @@ std::optional<std::vector<FullSpectrumResult>> evaluate(
     const Laplacian& laplacian, const KrylovOperator& S, const std::vector<Gain>& gains,
     const Signals& X, const Eigen::VectorXd& omega, const FullSpectrumOptions& options,
     bool mayRoundOff, const Progress& progress) {
+    // Two terms, and a sum and a result for each gain.
+    const double count = static_cast<double>(gains.size()),
+                 bytes = sizeof(typename Operator::Values) * (2.0 + count) +
+                         sizeof(double) * static_cast<double>(X.cols()) * count;
+    requireMemory(bytes * static_cast<double>(X.rows()), X.rows());
     const Centred centred(X, laplacian.constants);
     Terms<Operator> terms(laplacian, S, X, centred);
     const Details& details = terms.details();
@@ -436,7 +442,7 @@ std::optional<std::vector<FullSpectrumResult>> evaluate(
     // At the vertices the bound is often reached, and steps add up: one term more, of some 12.
     const double truncated =
         options.atEveryVertex ? 0.25 * options.accuracy : std::max(left, 0.5 * options.accuracy);
-    const int count = terms.add(series, errors, truncated, largest, progress);
+    const int length = terms.add(series, errors, truncated, largest, progress);
 
     std::vector<FullSpectrumResult> results(gains.size());
     for (std::size_t g = 0; g < gains.size(); ++g) {
@@ -449,9 +455,9 @@ std::optional<std::vector<FullSpectrumResult>> evaluate(
         });
         terms.release(g);
         laplacian.constants.add(centred.means() - laplacian.constants.means(result.Y), result.Y);
-        result.dimension = count;
+        result.dimension = length;
         result.errorEstimate =
-            errors.truncation(series[g], count, largest) + errors.others(series[g], largest);
+            errors.truncation(series[g], length, largest) + errors.others(series[g], largest);
         result.converged = result.errorEstimate <= options.accuracy;
         if (!result.converged) result.errorEstimate *= kNotConverged;
     }

@@ -22,6 +22,7 @@ namespace spectral {
 /// @param omega  frequencies at which the series are compared with their gains.
 /// @return       as applyFullSpectrum; empty if more than options.affordable terms are needed, or,
 ///               of a ShiftInvert, if the accuracy might be lost in round-off.
+/// @throws Error  with code OutOfMemory, when the terms and results do not fit.
 std::vector<FullSpectrumResult> applySeries(const Laplacian& laplacian, const KrylovOperator& S,
                                             const std::vector<Gain>& gains, const Signals& X,
                                             const Eigen::VectorXd& omega,
