@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <utility>
 
 #include "core/laplacian/constant_modes.h"
 #include "core/mesh/measures.h"
@@ -29,26 +30,25 @@ TEST(FullSpectrum, EqualsAllEigenvectorsWithinTheRequestedAccuracy) {
     for (const Mesh& mesh : classesOfMeshes()) {
         const Operator A(mesh);
         const HarmonicBasis dense = denseBasis(A);
-        for (const double feature : {0.3, 1.0})
-            for (const auto& options : testing::smoothTransferFunctions())
-                for (const double alpha : {1.0, 0.1}) {
-                    const TransferFunction F(options, 2.0 * kPi / feature);
-                    const Gain gain = fractionalPower(F, alpha);
-                    const double accuracy = 1e-6;
-                    const FullSpectrumResult result =
-                        testing::filteredFullSpectrum(A, gain, F.cutoff(), accuracy);
-                    const Vertices expected = testing::filteredDense(A, dense, gain);
-                    // The fractional power of a gain that vanishes inside the spectrum has a cusp
-                    // there; the solver may stop short, but reports it.
-                    const bool cusp = options.type == FilterType::BandStop &&
-                                      options.stopGain == 0.0 && alpha < 1.0;
-                    EXPECT_TRUE(result.converged || cusp);
-                    EXPECT_EQ(result.converged, result.errorEstimate <= accuracy);
-                    EXPECT_LE(testing::relativeError(A, result.Y - expected),
-                              result.errorEstimate + kRoundOff)
-                        << testing::describe(options) << ", feature " << feature << ", alpha "
-                        << alpha << ", dimension " << result.dimension;
-                }
+        for (const auto& [feature, alpha] : {std::pair{0.3, 1.0}, {0.3, 0.1}, {1.0, 0.1}})
+            for (const auto& options : testing::smoothTransferFunctions()) {
+                const TransferFunction F(options, 2.0 * kPi / feature);
+                const Gain gain = fractionalPower(F, alpha);
+                const double accuracy = 1e-6;
+                const FullSpectrumResult result =
+                    testing::filteredFullSpectrum(A, gain, F.cutoff(), accuracy);
+                const Vertices expected = testing::filteredDense(A, dense, gain);
+                // The fractional power of a gain that vanishes inside the spectrum has a cusp
+                // there; the solver may stop short, but reports it.
+                const bool cusp =
+                    options.type == FilterType::BandStop && options.stopGain == 0.0 && alpha < 1.0;
+                EXPECT_TRUE(result.converged || cusp);
+                EXPECT_EQ(result.converged, result.errorEstimate <= accuracy);
+                EXPECT_LE(testing::relativeError(A, result.Y - expected),
+                          result.errorEstimate + kRoundOff)
+                    << testing::describe(options) << ", feature " << feature << ", alpha " << alpha
+                    << ", dimension " << result.dimension;
+            }
     }
 }
 

@@ -30,9 +30,17 @@ def _ignore(*_: object) -> None:
 
 
 @pytest.fixture(scope="module")
-def cluster(tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
-    with dask_cluster(tmp_path_factory.mktemp("cluster")) as (address, _):
-        yield address
+def started(
+    tmp_path_factory: pytest.TempPathFactory,
+) -> Iterator[tuple[str, list[psutil.Process]]]:
+    """A cluster: its address, and its workers."""
+    with dask_cluster(tmp_path_factory.mktemp("cluster")) as (address, (_, *workers)):
+        yield address, [psutil.Process(worker.pid) for worker in workers]
+
+
+@pytest.fixture
+def cluster(started: tuple[str, list[psutil.Process]]) -> str:
+    return started[0]
 
 
 @pytest.fixture
@@ -98,18 +106,18 @@ def test_a_worker_killed_in_the_middle_of_a_tile_changes_nothing(
 
 
 def test_a_meshlab_process_killed_on_a_worker_is_replaced(
-    source: Path, target: Path, tmp_path: Path
+    started: tuple[str, list[psutil.Process]], source: Path, target: Path
 ) -> None:
     local = target.with_stem("local")
     filter_in_tiles(source, local, SMALL, _ignore, 8, _ignore)
-    with dask_cluster(tmp_path) as (address, (_, *started)):
+    address, workers = started
 
-        def kill(stage: str, fraction: float | None) -> None:
-            if stage == "tile 2":
-                for process in meshlab_processes([psutil.Process(one.pid) for one in started]):
-                    process.kill()
+    def kill(stage: str, fraction: float | None) -> None:
+        if stage == "tile 2":
+            for process in meshlab_processes(workers):
+                process.kill()
 
-        filter_in_tiles(source, target, SMALL, kill, 8, _ignore, scheduler=address)
+    filter_in_tiles(source, target, SMALL, kill, 8, _ignore, scheduler=address)
     assert target.read_bytes() == local.read_bytes()
 
 
