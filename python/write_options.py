@@ -8,7 +8,6 @@ their form.
 
 from __future__ import annotations
 
-import re
 import subprocess
 import sys
 import textwrap
@@ -47,23 +46,24 @@ CHOICES = {
     "form": "Form",
 }
 FLAGS = {
-    ("BasisOptions", "basis_size"): ("--basis-size", "-k"),
-    ("TextureOptions", "waviness"): ("--waviness", "--nesting-index-l"),
-    ("TextureOptions", "noise"): ("--noise", "--nesting-index-s"),
+    "BasisOptions": {"basis_size": ("--basis-size", "-k")},
+    "TextureOptions": {
+        "waviness": ("--waviness", "--nesting-index-l"),
+        "noise": ("--noise", "--nesting-index-s"),
+    },
 }
 # Of FilterOptions: what defines the transfer function and the Laplacian.
 SIGNALS = "apply_scalar_spectral_filter_per_vertex"
-HEAD = '''"""The options of the filters: names, defaults, limits, help.
+HEAD = '''"""The options of the filters by name, with their types; the core has all else.
 
 Written by python/write_options.py from the tables in plugin/core/contract: edit those.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Literal, TypedDict
 
-from meshlab_spectral.filters.option_types import LARGEST_INTEGER, Length, Limits, Options, option
+from meshlab_spectral.filters.option_types import Length, Options, table_of
 
 if TYPE_CHECKING:
     from typing_extensions import Unpack
@@ -114,52 +114,16 @@ def _parameters_of(table: str) -> list[dict[str, Any]]:
     return [one for one in parameters if one["name"] not in hidden]
 
 
-def _help_of(parameter: dict[str, Any]) -> str:
-    """Return the help as for a command: other parameters are flags."""
-
-    def flag(match: re.Match[str]) -> str:
-        return "--" + match[1].replace("_", "-")
-
-    text = re.sub(r"\|(\w+)\|", flag, parameter["help"]).replace("*", "")
-    if parameter["kind"] == "length" and "he default: " not in text:
-        text += f" Default: {parameter['default_in_words']}."
-    return text
-
-
 def _type_of(parameter: dict[str, Any]) -> str:
     kinds = {"choice": CHOICES.get(parameter["name"], ""), "length": "Length"}
     return kinds.get(parameter["kind"], parameter["kind"])
 
 
-def _default_of(parameter: dict[str, Any]) -> str:
-    default = parameter["default"]
-    if parameter["kind"] == "choice":
-        return repr(parameter["choices"][default])
-    if parameter["kind"] != "length":
-        return repr(default)
-    if default == "auto":
-        return "Length(automatic=True)"
-    return f"Length({float(default[:-1])}, {default[-1]!r})"
-
-
-def _limits_of(parameter: dict[str, Any]) -> str:
-    kind = parameter["kind"]
-    if kind not in ("int", "float"):
-        return ""
-    arguments = [f"{parameter['low']:g}"]
-    if parameter["high"] is not None:
-        arguments.append(f"{parameter['high']:g}")
-    elif kind == "int":
-        arguments.append("LARGEST_INTEGER")
-    if parameter["is_low_open"]:
-        arguments.append("low_open=True")
-    return f", Limits({', '.join(arguments)})"
-
-
 def _table_of(table: str) -> str:
     name, short, _ = TABLES[table]
+    flags = "".join(f", {one}={given!r}" for one, given in FLAGS.get(table, {}).items())
     lines = [
-        "@dataclass(frozen=True, kw_only=True)",
+        f"@table_of({name!r}, {short!r}{flags})",
         f"class {table}(Options):",
         f'    """Options of {_filter_named(name)["name"]}, named as in MeshLab.',
         "",
@@ -169,36 +133,14 @@ def _table_of(table: str) -> str:
         "        When a value is invalid; names the option, the value and what is allowed.",
         '    """',
         "",
-        f"    FILTER = {name!r}",
-        f"    TABLE = {short!r}",
-        "",
         # A length may be given as a text or a number, and is a `Length` then.
         "    if TYPE_CHECKING:",
         "",
         f"        def __init__(self, **named: Unpack[{_keywords_named(table)}]) -> None: ...",
         "",
     ]
-    for one in _parameters_of(table):
-        flags = FLAGS.get((table, one["name"]))
-        more = f", flags={flags!r}" if flags else ""
-        text = _wrapped(_help_of(one))
-        lines.append(
-            f"    {one['name']}: {_type_of(one)} = option({_default_of(one)}, {text}"
-            f"{_limits_of(one)}{more})"
-        )
+    lines += [f"    {one['name']}: {_type_of(one)}" for one in _parameters_of(table)]
     return "\n".join(lines)
-
-
-def _wrapped(text: str, width: int = 84) -> str:
-    """Return a string literal, in parts that fit on lines."""
-    parts, line = [], ""
-    for word in text.split(" "):
-        if len(repr(line + word)) > width:
-            parts.append(line)
-            line = ""
-        line += word + " "
-    parts.append(line.rstrip(" "))
-    return " ".join(repr(part) for part in parts)
 
 
 def _keywords_named(table: str) -> str:

@@ -217,6 +217,10 @@ NB_MODULE(_core, m) {
     python::endRunsAtExit();
     m.def("filters", python::describedFilters);
     m.def("presets", python::describedPresets);
+    m.def("length", python::parsedLength, "text"_a);
+    m.def("checked", python::checkedOptions, "name"_a, "options"_a);
+    m.def("sizes", python::sizesOf, "name"_a, "options"_a, "diagonal"_a, "mean_edge"_a,
+          "surface_diagonal"_a);
     m.def("warning_kinds", python::describedWarnings);
     m.def("apply", python::applyFilter, "name"_a, "vertices"_a, "faces"_a, "options"_a,
           nb::kw_only(), "selected"_a = nb::none(), "values"_a = nb::none(), "gain"_a = nb::none(),

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "arrays.h"
+#include "core/contract/length.h"
 #include "core/contract/presets.h"
 #include "core/support/errors.h"
 
@@ -14,14 +15,22 @@ namespace spectral::python {
 
 namespace {
 
-Value valueOf(const std::string& name, nb::handle given) {
+Value valueOf(nb::handle given) {
     if (nb::isinstance<nb::bool_>(given)) return nb::cast<bool>(given);
     if (nb::isinstance<nb::str>(given)) return nb::cast<std::string>(given);
-    if (int integer = 0; nb::isinstance<nb::int_>(given) && nb::try_cast(given, integer))
+    if (int integer = 0; PyIndex_Check(given.ptr()) && nb::try_cast(nb::int_(given), integer))
         return integer;
     if (double number = 0.0; nb::try_cast(given, number)) return number;
-    throw InvalidOption(name + " = " + nb::cast<std::string>(nb::str(given)) +
-                        ": must be a number, a text, true or false");
+    return nb::cast<std::string>(nb::str(given));  // no option takes it: the error shows it
+}
+
+/// A length in the units of the mesh: value, unit ("", "%", "e") and whether it is automatic.
+nb::tuple tupleOf(const Length& length) {
+    using Unit = Length::Unit;
+    const char* const unit = length.unit == Unit::Percent ? "%"
+                             : length.unit == Unit::Edges ? "e"
+                                                          : "";
+    return nb::make_tuple(length.value, unit, length.unit == Unit::Automatic);
 }
 
 nb::object objectOf(Value&& value) {
@@ -54,13 +63,11 @@ nb::dict described(const Parameter& parameter) {
     result["label"] = parameter.label;
     result["help"] = parameter.help;
     result["unit"] = parameter.unit;
+    result["range"] = parameter.range;
     result["kind"] = nameOf(parameter.kind);
     result["default"] = objectOf(Value(parameter.usual));
     result["default_in_words"] = parameter.automaticText;
     result["is_advanced"] = parameter.isAdvanced;
-    result["low"] = parameter.low;
-    result["high"] = parameter.high > parameter.low ? nb::cast(parameter.high) : nb::none();
-    result["is_low_open"] = parameter.isLowOpen;
     result["choices"] = parameter.choices;
     return result;
 }
@@ -69,10 +76,7 @@ nb::dict described(const Parameter& parameter) {
 
 Values valuesOf(const nb::dict& given) {
     Values values;
-    for (const auto& [name, value] : given) {
-        const auto key = nb::cast<std::string>(name);
-        values[key] = valueOf(key, value);
-    }
+    for (const auto& [name, value] : given) values[nb::cast<std::string>(name)] = valueOf(value);
     return values;
 }
 
@@ -80,6 +84,40 @@ nb::dict dictOf(Values&& report) {
     nb::dict result;
     for (auto& [name, value] : report) result[name.c_str()] = objectOf(std::move(value));
     return result;
+}
+
+nb::tuple parsedLength(const std::string& text) { return tupleOf(Length::parse(text)); }
+
+nb::dict checkedOptions(const std::string& filter, const nb::dict& given) {
+    nb::dict result;
+    const Values values = valuesOf(given);
+    for (const Parameter& one : filterNamed(filter).parameters) {
+        const auto found = values.find(one.name);
+        if (found == values.end()) continue;
+        Value value = checked(one, found->second);
+        if (one.kind != Parameter::Kind::Length)
+            result[one.name.c_str()] = objectOf(std::move(value));
+        else if (const auto* const text = std::get_if<std::string>(&value))
+            result[one.name.c_str()] = parsedLength(*text);
+        else
+            result[one.name.c_str()] = tupleOf({std::get<double>(value), Length::Unit::Absolute});
+    }
+    return result;
+}
+
+nb::dict sizesOf(const std::string& filter, const nb::dict& given, double diagonal, double meanEdge,
+                 double surfaceDiagonal) {
+    nb::dict sizes;
+    const Values values = valuesOf(given);
+    for (const Parameter& one : filterNamed(filter).parameters) {
+        if (one.kind != Parameter::Kind::Length) continue;
+        const auto found = values.find(one.name);
+        const Value& value = found == values.end() ? one.usual : found->second;
+        const double size =
+            std::get<double>(converted(one, value, {diagonal, meanEdge, surfaceDiagonal}));
+        sizes[one.name.c_str()] = size > 0.0 ? nb::cast(size) : nb::none();
+    }
+    return sizes;
 }
 
 nb::list listOf(const Warnings& warnings) {

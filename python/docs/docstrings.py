@@ -48,8 +48,7 @@ def list_fields(
     lines += ["", ".. rubric:: Fields", ""]
     defaults = obj().as_dict()
     for one in fields(obj):
-        # The help is that of the command: --stop-gain 1.
-        text = re.sub(r"--([a-z-]+)", lambda option: option[1].replace("-", "_"), help_of(one))
+        text = help_of(one).replace(r"\|", "")  # about other options
         lines += [f"``{one.name} = {defaults[one.name]!r}``", f"   {text}", ""]
 
 

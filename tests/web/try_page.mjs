@@ -109,7 +109,7 @@ assert.equal(await page.$eval('#field-pass_gain', (input) => input.value), '1');
 await page.$eval('#field-feature_size', (input) => { input.value = '-3'; });
 await page.click('#run');
 await idle();
-assert.match(await log(), /feature_size = -3: must be a length above zero/);
+assert.match(await log(), /feature_size = -3: must be above 0: give/);
 await page.$eval('#field-feature_size', (input) => { input.value = '300e'; });
 await page.click('#run');
 await page.waitForFunction(() => !document.getElementById('cancel').disabled);

@@ -41,7 +41,7 @@ Field<Call> maxDisplacementField(At at) {
                        "No vertex moves farther than this. Around vertices that would, the "
                        "surface moves less, too, so that no ridge is left; the report says on "
                        "how much of it. The default: no bound.")
-        .in("length, at least 0")
+        .in("length")
         .length("auto", nullptr, "0: no bound")
         .advanced();
 }

@@ -32,13 +32,13 @@ Fields<DenoiseCall> denoiseFields() {
                     "Strength",
                     "1 removes the noise as measured. More also removes fine details; less leaves "
                     "some noise; 0 changes nothing.")
-            .in("factor, at least 0"),
+            .in("factor"),
         field<Call>([](auto& call) -> auto& { return call.options.noiseHeight; }, "noise_height",
                     "Noise height",
                     "Standard deviation of the noise along the normals, such as 0.2e. Set it if "
                     "details were mistaken for noise, or noise for details. The default: as "
                     "measured, which the report states.")
-            .in("length, at least 0")
+            .in("length")
             .length("auto", nullptr, "0: as measured")
             .upToShare(0.2),
         field<Call>(
@@ -46,7 +46,7 @@ Fields<DenoiseCall> denoiseFields() {
             "Distance over which the noise is correlated: half the width of its bumps, such "
             "as 2e. Noise of up to one mean edge is independent at each vertex. The default: "
             "as measured.")
-            .in("length, at least 0")
+            .in("length")
             .length("auto", nullptr, "0: as measured"),
         selectedField<Call>([](auto& call) -> auto& { return call.selected; }, "four edges"),
         field<Call>([](auto& call) -> auto& { return call.options.keepCreases; }, "keep_creases",

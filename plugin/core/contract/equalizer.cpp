@@ -60,7 +60,7 @@ Fields<EqualizerCall> equalizerFields() {
                  "the smallest size" + (isSmallest ? " and of all finer ones" : "") +
                  ": 1 keeps them, 2 doubles them, 0.5 halves them, 0 removes them.")
                     .c_str())
-                .in("factor, 0 to 4")
+                .in("factor")
                 .to(kMaxEqualizerGain));
     }
     fields.push_back(
@@ -69,7 +69,7 @@ Fields<EqualizerCall> equalizerFields() {
                     "Size of the details that the last slider scales; it doubles with each slider "
                     "above. The default is three mean edges: a mesh has hardly any finer "
                     "details.")
-            .in("length, above 0")
+            .in("length")
             .above(0.0)
             .length("auto", smallestSizeOf, "three mean edges, at most 2.5 % of the diagonal"));
     fields.push_back(selectedField<Call>([](auto& call) -> auto& { return call.selected; },

@@ -43,7 +43,7 @@ Fields<FractionalCall> fractionalFields() {
                     "turns thin parts into spikes or balloons. 0 approximates infinitely many of "
                     "them, to the |tolerance|; 10 is the scheme of the paper with ten steps; 1 is "
                     "the classical one-shot filter.")
-            .in("number of steps, 0 to 1000")
+            .in("number of steps")
             .to(1000.0)
             .advanced());
     fields.push_back(
@@ -51,7 +51,7 @@ Fields<FractionalCall> fractionalFields() {
                     "Tolerance",
                     "With |steps| 0: largest distance between the result and that of infinitely "
                     "many steps, on all but a thousandth of the surface. Larger is faster.")
-            .in("length, above 0")
+            .in("length")
             .above(0.0)
             .length("0.05%", defaultTolerance, "0.05 % of the diagonal")
             .advanced());
@@ -61,7 +61,7 @@ Fields<FractionalCall> fractionalFields() {
                     "With |steps| 0: the number of passes of 1, 2, 4, ... steps, whatever the "
                     "|tolerance|. The report says how many a run took: that number repeats the "
                     "run exactly.")
-            .in("number of passes, 0 to 9")
+            .in("number of passes")
             .to(kMaxPasses)
             .advanced()
             .unusedIf([](const Call& call) -> const char* {
@@ -83,7 +83,7 @@ Fields<FractionalCall> fractionalFields() {
                     "For the full update: from 0, the paper's scheme, to 1, the conformal update. "
                     "0.1 is enough to contract thin parts that a strong full update leaves as "
                     "hair-thin spikes.")
-            .in("share, 0 to 1")
+            .in("share")
             .to(1.0)
             .advanced()
             .unusedIf([](const Call& call) -> const char* {
@@ -106,7 +106,7 @@ Fields<FractionalCall> fractionalFields() {
             "basis_size", "Basis size",
             "Number of frequencies (manifold harmonics) of a truncated spectrum, e.g. 300. Must be "
             "below the number of vertices; time and memory grow with it.")
-            .in("number of harmonics, at least 1")
+            .in("number of harmonics")
             .from(1.0)
             .advanced()
             .unusedIf(unlessTruncated));
@@ -130,7 +130,7 @@ Fields<FractionalCall> fractionalFields() {
             "Crease angle (0 = off)",
             "Edges whose two faces meet at more than this angle, in degrees, stay in place, "
             "and nothing is filtered across them. For the edges of a machine part, e.g. 40.")
-            .in("degrees, 0 to 180")
+            .in("degrees")
             .to(180.0)
             .advanced());
     fields.push_back(

@@ -25,7 +25,7 @@ Fields<SpectrumOptions> spectrumFields() {
                     "that are also computed individually, for scripts that need them; this takes "
                     "most of the time. The octaves cover all features in any case. On a small "
                     "mesh, all harmonics are computed.")
-            .in("number of harmonics, at least 0"),
+            .in("number of harmonics"),
         laplacianField<Call>([](auto& call) -> auto& { return call.laplacian; }),
         boundaryField<Call>([](auto& call) -> auto& { return call.boundary; },
                             "*free*: it is part of the shape. *fixed*: only the details that it "

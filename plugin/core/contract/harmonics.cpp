@@ -29,12 +29,12 @@ Fields<HarmonicsCall> harmonicsFields() {
                     "Number of the harmonic to show, below the basis size. The constant ones come "
                     "first, one for each component (none with a fixed boundary); higher ones are "
                     "finer.")
-            .in("number of a harmonic, from 0, below the basis size"),
+            .in("number of a harmonic", "from 0, below the basis size"),
         field<Call>([](auto& call) -> auto& { return call.options.basisSize; }, "basis_size",
                     "Basis size",
                     "Number of harmonics to compute, constant ones included. Must be below the "
                     "number of vertices that are not fixed; time and memory grow with it.")
-            .in("number of harmonics, at least 1")
+            .in("number of harmonics")
             .from(1.0),
         field<Call>(
             [](auto& call) -> auto& { return call.storeBasis; }, "store_basis", "Store basis",

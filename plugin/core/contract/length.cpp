@@ -1,6 +1,7 @@
 #include "core/contract/length.h"
 
 #include <cmath>
+#include <limits>
 #include <locale>
 #include <sstream>
 
@@ -19,10 +20,11 @@ Length Length::parse(const std::string& text) {
     if (length.unit != Unit::Absolute) number.pop_back();
     std::istringstream input(number);
     input.imbue(std::locale::classic());
-    if (!(input >> length.value) || !(input >> std::ws).eof())
-        throw InvalidOption("'" + text +
-                            "': give a percentage of the bounding box diagonal such as 5%, mean "
-                            "edges such as 6e, or a length such as 0.02");
+    using Single = std::numeric_limits<float>;
+    const bool isNumber = input >> length.value && (input >> std::ws).eof();
+    if (!isNumber || length.value < Single::min() || length.value > Single::max())
+        throw InvalidOption((isNumber ? text : "'" + text + "'") + ": give " + kLengthForms +
+                            ", above zero");
     if (length.unit == Unit::Percent && length.value > 100.0)
         throw InvalidOption(text + ": a percentage goes up to 100% of the diagonal");
     return length;

@@ -6,6 +6,11 @@
 
 namespace spectral {
 
+/// What a length may be given as.
+inline constexpr const char* kLengthForms =
+    "a percentage of the bounding box diagonal such as 5%, mean edges such as 6e, or a length such "
+    "as 0.02";
+
 /// A length as users write it: `5%` of the diagonal, `6e` (mean edges), `0.02` length units, or
 /// `auto`, chosen to suit the mesh.
 struct Length {

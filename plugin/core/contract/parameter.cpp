@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <iomanip>
+#include <limits>
 #include <sstream>
 
 #include "core/contract/length.h"
@@ -45,10 +46,26 @@ int choiceOf(const Parameter& parameter, const Value& value) {
     reject(parameter, value, "choose " + all);
 }
 
+/// A number in range that is one in single precision, too, in which MeshLab passes numbers on.
 double numberOf(const Parameter& parameter, const Value& value) {
-    if (const auto* const integer = std::get_if<int>(&value)) return *integer;
-    if (const auto* const number = std::get_if<double>(&value)) return *number;
-    reject(parameter, value, "must be a number");
+    double number = 0.0;
+    if (const auto* const integer = std::get_if<int>(&value))
+        number = *integer;
+    else if (const auto* const real = std::get_if<double>(&value))
+        number = *real;
+    else
+        reject(parameter, value, "must be a number");
+    using Single = std::numeric_limits<float>;
+    const double low = parameter.low + (parameter.isLowOpen ? Single::min() : 0.0);
+    const bool isBounded = parameter.high > parameter.low;
+    const bool isWhole = parameter.kind != Kind::Integer || std::holds_alternative<int>(value);
+    if (isWhole && number >= low && number <= (isBounded ? parameter.high : Single::max()))
+        return number;
+    std::string wanted = parameter.kind == Kind::Integer ? "must be an integer, " : "must be ";
+    wanted += rangeOf(parameter);
+    if (parameter.kind == Kind::Length) wanted += std::string(": give ") + kLengthForms;
+    if (number > Single::max()) wanted += ", at most " + textOf(Single::max());
+    reject(parameter, value, wanted);
 }
 
 /// Rejects a length that no filter can have been meant to take.
@@ -94,9 +111,7 @@ Value converted(const Parameter& parameter, const Value& value, const MeshLength
             if (!std::holds_alternative<bool>(value))
                 reject(parameter, value, "must be true or false");
             return value;
-        case Kind::Integer:
-            if (!std::holds_alternative<int>(value)) reject(parameter, value, "must be an integer");
-            return value;
+        case Kind::Integer: return static_cast<int>(numberOf(parameter, value));
         case Kind::Number: return numberOf(parameter, value);
         case Kind::Length: return lengthOf(parameter, value, mesh);
         case Kind::Choice: return choiceOf(parameter, value);
@@ -106,6 +121,24 @@ Value converted(const Parameter& parameter, const Value& value, const MeshLength
             break;
     }
     return value;
+}
+
+std::string rangeOf(const Parameter& parameter) {
+    const std::string low = textOf(parameter.low), high = textOf(parameter.high);
+    const bool isBounded = parameter.high > parameter.low;
+    if (parameter.isLowOpen) return "above " + low + (isBounded ? ", at most " + high : "");
+    return isBounded ? low + " to " + high : "at least " + low;
+}
+
+Value checked(const Parameter& parameter, const Value& value) {
+    const Value found = converted(parameter, value, {});
+    if (parameter.kind == Kind::Choice)
+        return parameter.choices[static_cast<std::size_t>(std::get<int>(found))];
+    if (parameter.kind != Kind::Length) return found;
+    if (const auto* const text = std::get_if<std::string>(&value)) return *text;
+    const double number = numberOf(parameter, value);
+    if (number == 0.0) return std::string("auto");  // of those with 0 in range, as in dialogs
+    return number;
 }
 
 void rejectUnknown(const std::vector<Parameter>& parameters, const Values& given) {

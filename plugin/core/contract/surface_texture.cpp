@@ -38,13 +38,13 @@ Fields<TextureCall> textureFields() {
             "form, not roughness. Waves of this length keep half of their height, as in ISO "
             "16610-61. With a plane, sphere or cylinder as |form|, the whole diagonal means no "
             "L-filter.")
-            .in("length, above 0")
+            .in("length")
             .above(0.0)
             .length("auto", wavinessOf, "twelve mean edges, at most 10 % of the diagonal"),
         field<Call>([](auto& call) -> auto& { return call.options.noise; }, "noise", "Noise cutoff",
                     "Nesting index of the S-filter: what is smaller is noise, not roughness. "
                     "The default: nothing is removed.")
-            .in("length, at least 0")
+            .in("length")
             .length("auto", nullptr, "0: no S-filter"),
         field<Call>([](auto& call) -> auto& { return call.options.form; }, "form", "Form",
                     "What counts as form (F-operator), not as roughness. *size*: heights that "
@@ -57,7 +57,7 @@ Fields<TextureCall> textureFields() {
                     "Form size",
                     "For |form| *size*: heights that vary more slowly are form. The default: eight "
                     "times |waviness|.")
-            .in("length, above the waviness cutoff")
+            .in("length", "above the waviness cutoff")
             .length("auto", nullptr, "0: eight waviness cutoffs")
             .advanced()
             .unusedIf([](const Call& call) {
@@ -70,7 +70,7 @@ Fields<TextureCall> textureFields() {
                     "boundaries, is left out: it gets the height 0. Holes of up to a quarter of a "
                     "cutoff count as missing points: nothing is left out around them. With 180 no "
                     "edge is a crease; a plane, sphere or cylinder has none.")
-            .in("degrees, 0 to 180")
+            .in("degrees")
             .to(180.0)
             .advanced(),
         field<Call>([](auto& call) -> auto& { return call.selected; }, "selected",

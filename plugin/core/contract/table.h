@@ -25,8 +25,10 @@ struct Field : Parameter {
         isAdvanced = true;
         return std::move(*this);
     }
-    Field&& in(std::string unitAndRange) && {
-        unit = std::move(unitAndRange);
+    /// @param words  the range, if it is not one of numbers.
+    Field&& in(std::string name, std::string words = {}) && {
+        unit = std::move(name);
+        range = std::move(words);
         return std::move(*this);
     }
     Field&& from(double least) && {
@@ -97,7 +99,13 @@ Field<Call> field(At at, const char* name, const char* label, const char* help) 
 
 template <class Call>
 std::vector<Parameter> parametersOf(const Fields<Call>& fields) {
-    return {fields.begin(), fields.end()};
+    std::vector<Parameter> parameters(fields.begin(), fields.end());
+    for (Parameter& one : parameters) {
+        if (one.unit.empty()) continue;
+        if (one.range.empty()) one.range = rangeOf(one);
+        one.unit += ", " + one.range;
+    }
+    return parameters;
 }
 
 /// The arguments of a filter, with defaults for what is not given.

@@ -36,7 +36,7 @@ double featureSizeOf(const MeshLengths& mesh);
 template <class Call, class At>
 Field<Call> featureSizeField(At at, const char* help) {
     return field<Call>(at, "feature_size", "Feature size", help)
-        .in("length, above 0")
+        .in("length")
         .above(0.0)
         .length("auto", featureSizeOf, "six mean edges, at most 5 % of the diagonal");
 }
@@ -71,20 +71,20 @@ void addTransferFields(Fields<Call>& fields) {
                                  "Strength (up to 1)",
                                  "Fraction of the filter to apply, as a power of its gains: 0.5 is "
                                  "half strength (a gain of 4 becomes 2).")
-                         .in("exponent, above 0, at most 1")
+                         .in("exponent")
                          .above(0.0)
                          .to(1.0));
     fields.push_back(field<Call>([](auto& call) -> auto& { return call.transfer.passGain; },
                                  "pass_gain", "Pass gain",
                                  "Factor for the details that the filter passes: 1 keeps them, 2 "
                                  "doubles their height, 0 removes them.")
-                         .in("factor, at least 0")
+                         .in("factor")
                          .unusedIf(ifCustom));
     fields.push_back(field<Call>([](auto& call) -> auto& { return call.transfer.stopGain; },
                                  "stop_gain", "Stop gain",
                                  "Factor for all other details: 0 removes them, 0.5 halves their "
                                  "height, 1 keeps them.")
-                         .in("factor, at least 0")
+                         .in("factor")
                          .unusedIf(ifCustom));
     fields.push_back(
         field<Call>([](auto& call) -> auto& { return call.customGain; }, "transfer_function",
@@ -102,7 +102,7 @@ void addTransferFields(Fields<Call>& fields) {
                                  "band_width", "Band width (octaves)",
                                  "Width of the band for band-pass and band-stop, in octaves: with "
                                  "1, its largest details are twice as large as its smallest.")
-                         .in("octaves, above 0")
+                         .in("octaves")
                          .above(0.0)
                          .advanced()
                          .unusedIf([](const Call& call) -> const char* {
@@ -123,7 +123,7 @@ void addTransferFields(Fields<Call>& fields) {
                                  "Butterworth order",
                                  "Steepness of the butterworth response, from 1 (gentle) to 64 "
                                  "(nearly ideal).")
-                         .in("order, 1 to 64")
+                         .in("order")
                          .from(1.0)
                          .to(64.0)
                          .advanced()

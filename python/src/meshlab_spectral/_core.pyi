@@ -1,6 +1,6 @@
 # plugin/python/module.cpp
 from collections.abc import Callable, Mapping, Sequence
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,6 +11,15 @@ _Numbers = tuple[NDArray[np.float64], _Lists, int, int]
 
 def filters() -> list[dict[str, Any]]: ...
 def presets() -> list[tuple[str, str, str, dict[str, Any]]]: ...
+def length(text: str) -> tuple[float, Literal["", "%", "e"], bool]: ...
+def checked(name: str, options: Mapping[str, object]) -> dict[str, Any]: ...
+def sizes(
+    name: str,
+    options: Mapping[str, object],
+    diagonal: float,
+    mean_edge: float,
+    surface_diagonal: float,
+) -> dict[str, float | None]: ...
 def warning_kinds() -> dict[str, str]: ...
 def apply(
     name: str,

@@ -116,7 +116,9 @@ TEST(Filters, RefuseUnknownAndWrongValuesByName) {
         return "";
     };
     EXPECT_NE(reason({{"stepz", 1}}).find("there is no option stepz"), std::string::npos);
-    EXPECT_EQ(reason({{"steps", 1.5}}), "steps = 1.5: must be an integer");
+    EXPECT_EQ(reason({{"steps", 1.5}}), "steps = 1.5: must be an integer, 0 to 1000");
+    EXPECT_EQ(reason({{"power", 1.5}}), "power = 1.5: must be above 0, at most 1");
+    EXPECT_EQ(reason({{"pass_gain", -1}}), "pass_gain = -1: must be at least 0");
     EXPECT_EQ(reason({{"boundary", std::string("open")}}), "boundary = open: choose free, fixed");
     EXPECT_EQ(reason({{"boundary", 2}}), "boundary = 2: choose 0 (free), 1 (fixed)");
     EXPECT_NE(reason({{"feature_size", std::string("5 m")}}).find("feature_size = '5 m'"),

@@ -111,8 +111,8 @@ def test_a_dozen_pictures_range_from_the_first_harmonic_to_the_last(first: int, 
 
 
 WRONG: dict[str, tuple[list[object], int, str]] = {
-    "larger than the mesh": (["-k", 5000], 2, "basis_size = 5000"),
-    "no size": (["-k", 0], 2, "basis_size = 0"),
+    "larger than the mesh": (["-k", 5000], 2, "--basis-size 5000"),
+    "no size": (["-k", 0], 2, "--basis-size 0"),
     "another boundary": (["--boundary", "loose"], 2, "fixed"),
     "a mode beyond the basis": (["-k", 10, "--modes", "3,10"], 2, "mode 10"),
     "a mode that is no number": (["--modes", "first"], 2, "first"),

@@ -66,9 +66,9 @@ def test_a_full_disk_is_called_so(cow: Path, tmp_path: Path) -> None:
 
 def test_a_length_beyond_the_mesh_is_refused(cow: Path, existing: Path) -> None:
     done = command("filter", cow, existing, "--overwrite", "--feature-size", 50)
-    assert_fails(done, 2, "feature_size = 50: is", "did you mean 50%?")
+    assert_fails(done, 2, "--feature-size 50: is", "did you mean 50%?")
     done = command("denoise", cow, existing, "--overwrite", "--noise-height", 15)
-    assert_fails(done, 2, "noise_height = 15: is", "did you mean 15%?")
+    assert_fails(done, 2, "--noise-height 15: is", "did you mean 15%?")
     done = command("filter", cow, existing, "--overwrite", "--feature-size", 5000)
     assert_fails(done, 2, "give at most 100%")
 

@@ -55,10 +55,10 @@ def test_the_table_has_the_parameters_of_the_standard(rough: Path) -> None:
 def test_a_cutoff_that_does_not_fit_is_refused(rough: Path) -> None:
     done = command("texture", rough, "--waviness", "0.3", "--noise", "0.4")
     assert done.returncode == 2
-    assert "noise = 0.4" in done.stderr
+    assert "--noise 0.4" in done.stderr
     assert "Traceback" not in done.stderr
     for name in ("--waviness", "--nesting-index-l"):
-        assert f"Error: {name}: 0: must be" in command("texture", rough, f"{name}=0").stderr
+        assert f"Error: {name}: 0: give" in command("texture", rough, f"{name}=0").stderr
 
 
 def assert_shows_the_deviation(path: Path) -> None:

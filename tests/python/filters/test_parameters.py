@@ -67,10 +67,15 @@ def test_the_feature_size_of_a_fine_mesh_is_six_mean_edges(samples: Path) -> Non
     assert ms.apply_filter(FILTER)["feature_size"] == pytest.approx(size, rel=1e-6)
 
 
-def test_only_the_feature_size_can_be_automatic() -> None:
-    assert FilterOptions.from_dict({"feature_size": "auto"}) == FilterOptions()
-    with pytest.raises(OptionError, match="tolerance = auto: cannot be automatic"):
-        FilterOptions.from_dict({"tolerance": "auto"})
+def test_an_automatic_length_is_its_default() -> None:
+    names = ("feature_size", "tolerance", "max_displacement")
+    assert (
+        FilterOptions.from_dict({"feature_size": "auto", "max_displacement": 0}) == FilterOptions()
+    )
+    one, other = FilterOptions(), FilterOptions.from_dict(dict.fromkeys(names, "auto"))
+    assert one.sizes(100.0, 0.5, 80.0) == other.sizes(100.0, 0.5, 80.0)
+    sizes = {"feature_size": 3.0, "tolerance": float(np.float32(0.04)), "max_displacement": None}
+    assert one.sizes(100.0, 0.5, 80.0) == sizes
 
 
 @pytest.mark.parametrize("name", CHOICES)

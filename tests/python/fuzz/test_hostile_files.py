@@ -168,7 +168,7 @@ def test_a_hostile_file_is_read_or_refused_by_every_command(
         done = run([command, str(source.relative_to(folder)), *words], folder, trace)
         what = f"{command} {name} {seed} of {bytes_} bytes: {done}"
         # A basis of 3 does not suit every mesh, and that is an option's error.
-        assert done.code in (0, 1) or (done.code == 2 and "basis_size = 3" in done.errors), what
+        assert done.code in (0, 1) or (done.code == 2 and "--basis-size 3" in done.errors), what
         assert "Traceback" not in done.errors, what
         assert "unexpected error" not in done.errors, what
         assert done.errors.strip() or done.code == 0, what

@@ -8,7 +8,7 @@ from typing import TypedDict
 
 from meshlab_spectral.batch.outputs import DEFAULT_PATTERN
 from meshlab_spectral.errors import OptionError
-from meshlab_spectral.filters.option_types import Limits, option
+from meshlab_spectral.filters.option_types import option
 from meshlab_spectral.filters.options import DenoiseKeywords, FilterKeywords
 from meshlab_spectral.plugin.limits import given_memory_limit, threads
 
@@ -65,7 +65,7 @@ class Settings:
         metavar="FILE",
     )
     workers: int | None = option(
-        None, "Files processed at once. By default one per processor.", Limits(1)
+        None, "Files processed at once. By default one per processor.", range="at least 1"
     )
     memory_limit: int | None = option(
         None,
@@ -74,7 +74,7 @@ class Settings:
         metavar="SIZE",
     )
     timeout: float | None = option(
-        None, "Time limit per file in seconds. By default none.", Limits(1)
+        None, "Time limit per file in seconds. By default none.", range="at least 1"
     )
     scheduler: str | None = option(
         None,

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 from collections.abc import Callable, Collection
 from dataclasses import fields
 from pathlib import Path
@@ -169,19 +170,23 @@ def with_options(
 
 
 def _parameter(one: Any, type_: Any, panel: str | None) -> tuple[str, Any, Any, Any]:
-    """Convert a field for `with_parameters`; ranges of filter options are checked by `Options`."""
-    shown: dict[str, Any] = {key: one.metadata[key] for key in ("help", "metavar")}
-    shown["rich_help_panel"] = panel
-    if panel is None and one.metadata["limits"]:
-        shown["min"] = one.metadata["limits"].low
+    """Convert a field for `with_parameters`; options of filters are checked by the core."""
+    shown: dict[str, Any] = {"metavar": one.metadata["metavar"], "rich_help_panel": panel}
+    shown["help"] = re.sub(r"\|(\w+)\|", _flag, one.metadata["help"])
+    if panel is None and "range" in one.metadata:
+        shown["min"] = 1
     if type_ is Length:
         shown |= {"parser": _length, "metavar": "SIZE"}
     elif one.name == "memory_limit":
         shown["parser"] = memory_size
     elif any(" " in choice for choice in get_args(type_) if isinstance(choice, str)):
         shown["autocompletion"] = _completed(get_args(type_))
-    default = str(one.default) if type_ is Length else one.default
+    default = str(one.default) if isinstance(one.default, Length) else one.default
     return one.name, type_, typer.Option(*one.metadata["flags"], **shown), default
+
+
+def _flag(other: re.Match[str]) -> str:
+    return "--" + other[1].replace("_", "-")
 
 
 def _completed(choices: Collection[str]) -> Callable[[str], list[str]]:
@@ -233,6 +238,7 @@ def memory_size(text: str | int) -> int:
 
 
 def _length(text: str | Length) -> Length:
+    """Parse a length; its error names the option as it was written."""
     try:
         return text if isinstance(text, Length) else Length.parse(text)
     except OptionError as error:

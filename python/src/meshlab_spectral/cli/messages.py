@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import logging
+import re
 from collections.abc import Iterator
 from dataclasses import dataclass
 
@@ -62,9 +63,16 @@ def errors_reported(when_interrupted: str = "no output was written") -> Iterator
     except SpectralError as error:
         if VERBOSITY.debug:
             MESSAGES.print_exception()
-        print_error(str(error))
+        print_error(_in_shell(error))
         usage = isinstance(error, OptionError | FormatError | InputError)
         raise typer.Exit(EXIT_USAGE if usage else EXIT_FAILED) from error
+
+
+def _in_shell(error: SpectralError) -> str:
+    """Name an option that an error begins with as a shell does."""
+    if not isinstance(error, OptionError):
+        return str(error)
+    return re.sub(r"^(\w+) = ", lambda name: f"--{name[1].replace('_', '-')} ", str(error))
 
 
 def print_result(result: Table | object) -> None:

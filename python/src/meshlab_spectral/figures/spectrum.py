@@ -52,10 +52,11 @@ def filter_name(options: FilterOptions) -> str:
 
 def feature_size_of(options: FilterOptions, spectrum: GeometrySpectrum) -> float:
     """Return the filter's feature size in the units of the mesh."""
-    size = options.feature_size
-    if size.automatic:
+    diagonal = spectrum.diagonal
+    size = options.sizes(diagonal, spectrum.mean_edge, diagonal)["feature_size"]
+    if size is None or options.feature_size.automatic:
         return spectrum.default_feature_size
-    return size.in_units_of_mesh(spectrum.diagonal, spectrum.mean_edge)
+    return size
 
 
 def octave_gains(spectrum: GeometrySpectrum, options: FilterOptions) -> Array:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import fields
 from pathlib import Path
 from typing import Any
 
@@ -22,7 +21,7 @@ from meshlab_spectral.files.region import Region
 from meshlab_spectral.files.region_vertices import chosen_parts
 from meshlab_spectral.files.touching import pieces
 from meshlab_spectral.filters.arrays import mean_edge
-from meshlab_spectral.filters.option_types import Length, Options
+from meshlab_spectral.filters.option_types import Options
 from meshlab_spectral.plugin.loading import load
 
 
@@ -43,7 +42,7 @@ def intent_of(
     dict
         "surfaces", for each one that would be filtered its "mesh", the name, "vertices", "faces",
         "filtered_vertices" if there is a region or a selection, "diagonal", "mean_edge" and
-        "sizes", see `sizes_of`; "is_patched", whether the output keeps all that is not moved.
+        "sizes", see `Options.sizes`; "is_patched", whether the output keeps all that is not moved.
     """
     require_one_choice(options, region)
     on_stage("reading", None)
@@ -66,28 +65,10 @@ def intent_of(
             "faces": len(F),
             "diagonal": diagonal,
             "mean_edge": edge,
-            "sizes": sizes_of(options, diagonal, edge, surface_diagonal),
+            "sizes": options.sizes(diagonal, edge, surface_diagonal),
         }
         is_part = region is not None or getattr(options, "selected", False)
         if is_part and part.selected is not None:
             described["filtered_vertices"] = int(np.count_nonzero(part.selected))
         surfaces.append(described)
     return {"surfaces": surfaces, "is_patched": is_patched}
-
-
-def sizes_of(
-    options: Options, diagonal: float, mean_edge: float, surface_diagonal: float
-) -> dict[str, float | None]:
-    """Return the sizes among the options in the units of a mesh; None: the filter measures it.
-
-    Defaults refer to the diagonal of the triangles alone.
-    """
-    sizes: dict[str, float | None] = {}
-    for one in fields(options):
-        size = getattr(options, one.name)
-        if not isinstance(size, Length):
-            continue
-        is_measured = size.automatic and one.name.startswith("noise_")
-        of = surface_diagonal if size == one.default else diagonal
-        sizes[one.name] = None if is_measured else size.in_units_of_mesh(of, mean_edge)
-    return sizes

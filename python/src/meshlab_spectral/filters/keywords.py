@@ -14,9 +14,7 @@ from meshlab_spectral.filters.option_types import Length
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 
-# Upper bounds that only reflect the number type.
-_UNLIMITED = re.compile(r",? (to|at most) (3\.4e\+38|2147483647)$")
-_FLAG = re.compile(r"--([a-z][a-z-]*)(?: (\d[\d.]*))?")
+_OTHER = re.compile(r"\|(\w+)\|(?: (\d[\d.]*))?")
 
 
 def takes_options(
@@ -73,18 +71,17 @@ def _plain(default: Any) -> Any:
 
 
 def _explained(one: Any, kind: Any) -> str:
-    """Return the docstring entry of an option: its help, with flags as keywords, and its range."""
+    """Return the docstring entry of an option: its help and its range."""
     facts = [repr(one) for one in get_args(kind) if not isinstance(kind, UnionType)]
-    if one.metadata["limits"]:
-        facts.append(_UNLIMITED.sub("", str(one.metadata["limits"])))
+    if of := one.metadata.get("range"):
+        facts.append(of)
     indent = " " * 4
-    text = _FLAG.sub(_as_keyword, one.metadata["help"])
+    text = _OTHER.sub(_as_keyword, one.metadata["help"])
     if facts:
         text += f" Range: {', '.join(facts)}."
     wrapped = textwrap.fill(text, 100, initial_indent=indent, subsequent_indent=indent)
     return f"{one.name}\n{wrapped}\n"
 
 
-def _as_keyword(flag: re.Match[str]) -> str:
-    name = flag[1].replace("-", "_")
-    return f"{name}={flag[2]}" if flag[2] else name
+def _as_keyword(other: re.Match[str]) -> str:
+    return f"{other[1]}={other[2]}" if other[2] else other[1]

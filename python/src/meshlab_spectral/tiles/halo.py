@@ -59,9 +59,8 @@ def reach_of(options: Options, whole: Lengths) -> float:
     require_local(options)
     if not isinstance(options, FilterOptions):
         return REACH * whole.mean_edge
-    automatic = min(6 * whole.mean_edge, whole.surface_diagonal / 20)
-    size = options.feature_size
-    length = automatic if size.automatic else size.in_units_of_mesh(whole.diagonal, whole.mean_edge)
+    sizes = options.sizes(whole.diagonal, whole.mean_edge, whole.surface_diagonal)
+    length = sizes["feature_size"] or 0.0
     x = np.linspace(0.0, _HIGHEST, _SAMPLES + 1)
     x[0] = 1e-3 * x[1]  # where no logarithm fails
     gains = gain(options, x, MeshLengths(length, whole.diagonal, whole.mean_edge))

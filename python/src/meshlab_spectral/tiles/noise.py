@@ -19,11 +19,8 @@ _OF_THE_WHOLE = {"voxels": "steps of voxels", "scan_lines": "scan lines"}
 
 def given_noise(options: DenoiseOptions, diagonal: float, mean_edge: float) -> dict[str, float]:
     """Return the "noise_height" and "noise_size" that are given, as lengths; 0: to be measured."""
-    sizes = {"noise_height": options.noise_height, "noise_size": options.noise_size}
-    return {
-        name: 0.0 if size.automatic else size.in_units_of_mesh(diagonal, mean_edge)
-        for name, size in sizes.items()
-    }
+    sizes = options.sizes(diagonal, mean_edge, diagonal)
+    return {name: sizes[name] or 0.0 for name in ("noise_height", "noise_size")}
 
 
 def measured_noise(

@@ -14,7 +14,6 @@ import numpy as np
 
 from meshlab_spectral.errors import MeshFileError, OptionError, UntiledError
 from meshlab_spectral.files.extensions import is_same_format
-from meshlab_spectral.files.intent import sizes_of
 from meshlab_spectral.files.region_vertices import NOTHING_SELECTED
 from meshlab_spectral.files.sources import check_is_place, check_source
 from meshlab_spectral.files.whole_files import LOCK, check_target, holding, resolved, writing_whole
@@ -124,7 +123,7 @@ def intent_in_tiles(
         "faces": rows.faces,
         "diagonal": diagonal,
         "mean_edge": edge,
-        "sizes": sizes_of(options, *measured.lengths),
+        "sizes": options.sizes(*measured.lengths),
     }
     return {"surfaces": [surface], "is_patched": True, "tiles": count}
 
