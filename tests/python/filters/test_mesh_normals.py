@@ -176,16 +176,16 @@ def denoised(mesh: Any) -> Any:
     [
         *((library, name, 1.0, smoothed) for library in LIBRARIES for name in NAMES),
         *((library, "Normals", -1.0, denoised) for library in LIBRARIES),
-        *((pyvista_mesh, name, -1.0, smoothed) for name in NAMES),
+        *((pyvista_mesh, name, -1.0, smoothed) for name in [*NAMES, "Normals:x"]),
     ],
 )
 def test_normals_follow_on_their_side(
     library: Callable[..., Made], name: str, side: float, filtered: Callable[[Any], Any]
 ) -> None:
     at_vertices, at_faces = side * vertex_normals(V), side * face_normals(V)
-    names = {"nx ny nz": ["nx", "ny", "nz"], "normal_x": ["normal_x", "normal_y", "normal_z"]}.get(
-        name
-    )
+    names = name.split() if " " in name else None
+    if name[-2:] in ("_x", ":x"):
+        names = [name[:-1] + axis for axis in "xyz"]
     if names is None:
         other = f"Cell{name}"
         mesh, points, data = library({name: at_vertices}, {other: at_faces})
