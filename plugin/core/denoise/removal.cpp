@@ -240,7 +240,6 @@ Removal removeAlongRays(const FaceGraph& graph, const Points& X0, const RemovalO
 /// Linear steps in the places where they do better, rounds elsewhere.
 Followed withoutWhiteNoise(const FaceGraph& graph, const Points& X0, const RemovalOptions& options,
                            const Progress& progress) {
-    constexpr double kFew = 0.02;  // share of the vertices that rounds are not worthwhile for
     // Neighbours along a scan line weigh more than those across.
     const VertexGraph means =
         options.areScanLines ? weightedByLength(graph.vertices, X0, 1.0) : graph.vertices;
@@ -254,7 +253,7 @@ Followed withoutWhiteNoise(const FaceGraph& graph, const Points& X0, const Remov
         linearSteps(graph, means, X0, options.mayMove, options.noise, options.areImpulses);
     limitDisplacement(X0, options, linear.X);
     Followed result{{std::move(linear.X), linear.steps}, std::move(linear.N)};
-    if (linear.rejected <= kFew || options.areScanLines) return result;
+    if (linear.rejected == 0.0 || options.areScanLines) return result;
     if (options.rays.direction.rows() > 0 && isAlike)
         return {removeAlongRays(graph, X0, options), {}};
     Followed rounds = roundsAndFlatParts(graph, X0, options, progress);

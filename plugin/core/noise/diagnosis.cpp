@@ -36,17 +36,11 @@ FoundSpikes sparseSpikes(const FaceGraph& graph, const Points& X, const std::vec
     constexpr double kDetectionLimit = 4.0, kRemovalLimit = 3.0;  // deviations
     constexpr Index kMinCount = 50;
     constexpr double kMinShareOfTail = 0.004;
-    constexpr double kMaxClustering = 2.0;
-    constexpr Index kMaxGrowth = 3;  // of the counts with the lower and the higher limit
     Spikes spikes = findSpikes(graph, X, mayMove, kDetectionLimit, meanEdge);
-    const bool areUnrelated = spikes.count >= kMinCount && spikes.clustering < kMaxClustering;
-    bool areTail = areUnrelated && spikes.share() >= kMinShareOfTail;
-    if (areUnrelated && spikes.share() >= kMinShareOfSpikes &&
-        localTail(graph.vertices, localResiduals(graph, X, mayMove), mayMove) > kMinTailOfSpikes) {
-        Spikes all = findSpikes(graph, X, mayMove, kRemovalLimit, meanEdge);
-        areTail = all.count > kMaxGrowth * spikes.count;
-        if (!areTail) return {std::move(all)};
-    }
+    if (spikes.share() >= kMinShareOfSpikes &&
+        localTail(graph.vertices, localResiduals(graph, X, mayMove), mayMove) > kMinTailOfSpikes)
+        return {findSpikes(graph, X, mayMove, kRemovalLimit, meanEdge)};
+    const bool areTail = spikes.count >= kMinCount && spikes.share() >= kMinShareOfTail;
     return {certainSpikes(graph, X, std::move(spikes), meanEdge), areTail};
 }
 
@@ -58,12 +52,13 @@ bool hasManySpikes(const Diagnosis& diagnosis) {
 /// Fraction of the progress for the mesh as one, before its places.
 constexpr double kWholeMesh = 0.7;
 
-/// Share of the height that is noise, `least` or more. It decreases above a correlation of
-/// residuals that may come from a scanner's noise, but also from a coarse shape with a little
-/// noise.
-double noiseShare(double correlation, double least) {
+/// Share of the height that is noise. It decreases above a correlation of residuals that may come
+/// from a coarse shape with a little noise.
+double noiseShare(double correlation) {
     constexpr double kSlope = 14.0;
-    return std::clamp(1.0 - kSlope * (correlation - kMaxPureNoise), least, 1.0);
+    // Of noise of .1 edges on a coarse cow, .3 leaves 80 % of the angle; 1 takes some of the cow.
+    constexpr double kLeast = 0.4;
+    return std::clamp(1.0 - kSlope * (correlation - kMaxPureNoise), kLeast, 1.0);
 }
 
 // Chosen on blocks1, blocks3, grid05 to grid11 of ../shared/denoise_local. In mean edges:
@@ -72,9 +67,8 @@ constexpr double kMinVoxel = 0.3, kMinRounding = 0.04;
 /// Whether the vertices on a grid are those of the surface of a binary volume.
 void findVoxels(const FaceGraph& graph, const CoordinateGrid& grid,
                 const std::vector<bool>& isMeasured, Diagnosis& diagnosis) {
-    constexpr double kMaxCorrelationOfFaces =
-        0.5;  // of weighted residuals; designed shapes have more
-    constexpr double kMinDeviationOfFaces = 0.01;  // of these, mean edges: designed shapes are flat
+    // Of weighted residuals, mean edges: designed shapes are flat.
+    constexpr double kMinDeviationOfFaces = 0.01;
     if (const auto voxel = voxelLattice(grid)) {
         diagnosis.kind = NoiseKind::Voxels;
         diagnosis.voxel = *voxel;
@@ -82,8 +76,9 @@ void findVoxels(const FaceGraph& graph, const CoordinateGrid& grid,
     }
     const double edge = diagnosis.noise.meanEdge;
     if (grid.step.minCoeff() < kMinVoxel * edge) return;
-    const auto [deviation, correlation] = weightedResiduals(graph, diagnosis.X, isMeasured);
-    if (!(correlation < kMaxCorrelationOfFaces && deviation > kMinDeviationOfFaces * edge)) return;
+    if (!(weightedResiduals(graph, diagnosis.X, isMeasured).deviation >
+          kMinDeviationOfFaces * edge))
+        return;
     diagnosis.kind = NoiseKind::VoxelFaces;
     diagnosis.voxel = grid.step;
 }
@@ -108,20 +103,12 @@ void findTurnedVoxels(const FaceGraph& graph, const std::vector<bool>& isMeasure
     }
 }
 
-/// Whether the coordinates were rounded to the grid, which explains most of the residuals.
-void findRounding(const FaceGraph& graph, const CoordinateGrid& grid,
-                  const std::vector<bool>& isMeasured, Diagnosis& diagnosis) {
-    constexpr double kMinResidual = 0.5, kMaxResidual = 3.0;  // median, over the height of rounding
+/// Whether the coordinates were rounded to the grid.
+void findRounding(const CoordinateGrid& grid, Diagnosis& diagnosis) {
     const double edge = diagnosis.noise.meanEdge;
     if (!(grid.step.minCoeff() > kMinRounding * edge && grid.step.maxCoeff() < kMinVoxel * edge))
         return;
     const double height = std::sqrt(grid.step.squaredNorm() / 3.0 / 12.0);  // of uniform noise
-    const LocalResiduals residuals = localResiduals(graph, diagnosis.X, isMeasured);
-    std::vector<double> deviation;
-    for (Index i = 0; i < residuals.deviation.size(); ++i)
-        if (isMeasured[i]) deviation.push_back(residuals.deviation[i]);
-    const double median = quantile(std::move(deviation), 0.5);
-    if (!(median > kMinResidual * height && median < kMaxResidual * height)) return;
     diagnosis.kind = NoiseKind::Rounded;
     diagnosis.noise.height = height;
     diagnosis.field = NoiseField::ofHeight(height, edge, diagnosis.X.rows());
@@ -214,11 +201,6 @@ void addFlatParts(const FaceGraph& graph, const Points& X, std::vector<bool>& is
 Diagnosis diagnoseWhole(const FaceGraph& graph, const Points& X,
                         const std::vector<bool>& isMeasured, bool isKnown,
                         const Progress& progress) {
-    constexpr Index kMinMeasuredFine = 1000;        // vertices
-    constexpr double kMinHeightCorrelated = 0.045;  // mean edges
-    // Of noise of .1 edges on a coarse cow, .3 leaves 80 % of the angle and 1 takes some of the
-    // cow; as correlated noise, .4 takes some of a range scan (rangescan_lato000, decimated).
-    constexpr double kLeastWhite = 0.4, kLeastCorrelated = 0.3;
     constexpr double kMaxCorrelationOfNoise = 0.2;  // above it, the residuals are those of a shape
     constexpr double kHighNoise = 0.09;  // mean edges: no shape alternates as high, if at all
     Diagnosis diagnosis;
@@ -239,8 +221,7 @@ Diagnosis diagnoseWhole(const FaceGraph& graph, const Points& X,
         }
         if (areNeedles) {
             diagnosis.kind = NoiseKind::Tessellation;
-            const auto lines = scanLineNoise(graph, X, isMeasured);
-            if (lines && measured >= kMinMeasuredFine) {
+            if (const auto lines = scanLineNoise(graph, X, isMeasured)) {
                 diagnosis.kind = NoiseKind::ScanLines;
                 diagnosis.noise.height = lines->height;
                 diagnosis.field = NoiseField::ofHeight(lines->height, lines->edge, X.rows());
@@ -252,7 +233,7 @@ Diagnosis diagnoseWhole(const FaceGraph& graph, const Points& X,
         diagnosis.kind = NoiseKind::TooFew;
         return diagnosis;
     }
-    if (grid && measured >= kMinMeasuredFine) findRounding(graph, *grid, isMeasured, diagnosis);
+    if (grid) findRounding(*grid, diagnosis);
     if (diagnosis.kind != NoiseKind::None) return diagnosis;
     progress.report(0.2, kStage);
     const FoundSpikes found = sparseSpikes(graph, X, isMeasured, edge);
@@ -274,17 +255,13 @@ Diagnosis diagnoseWhole(const FaceGraph& graph, const Points& X,
     noise.isUnderShape = noise.isUnderShape && !areNeedles;
     if (isRising || noise.isShape) return diagnosis;
     if (noise.size > 1.0) {
-        if (measured >= kMinMeasuredFine &&
-            (isCoarser ? 1.0 : noiseShare(correlation, kLeastCorrelated)) * noise.height >=
-                kMinHeightCorrelated * edge)
-            diagnosis.kind = NoiseKind::Correlated;
+        diagnosis.kind = NoiseKind::Correlated;
         return diagnosis;
     }
-    const double share = noise.isUnderShape ? 1.0 : noiseShare(correlation, kLeastWhite);
     if (!isWhite && !noise.isUnderShape && noise.height < kHighNoise * edge &&
         !hasManySpikes(diagnosis))
         return diagnosis;
-    noise.height *= share;
+    if (!noise.isUnderShape) noise.height *= noiseShare(correlation);
     // The steps of voxels are flat, too, but do not alternate.
     if (isWhite) addFlatParts(graph, X, diagnosis.isClean);
     diagnosis.kind = noise.height < kMinHeight * edge ? NoiseKind::None
@@ -297,9 +274,6 @@ Diagnosis diagnoseWhole(const FaceGraph& graph, const Points& X,
 NoiseField localNoise(const FaceGraph& graph, const std::vector<bool>& isMeasuredInWhole,
                       const Diagnosis& whole) {
     const bool isWhite = whole.kind == NoiseKind::White || whole.kind == NoiseKind::Impulses;
-    // Noise in places and a clean rest look like weak correlated noise together: on a machine part
-    // with noise of 0.04 to 0.3 edges a tenth of the surface is certain, on kinect_Cone 0.5 %.
-    constexpr double kMinCertainOfCorrelated = 0.05;
     const bool isCorrelated = whole.kind == NoiseKind::Correlated;
     if (!isWhite && !isCorrelated && whole.kind != NoiseKind::None &&
         whole.kind != NoiseKind::Shape)
@@ -308,8 +282,7 @@ NoiseField localNoise(const FaceGraph& graph, const std::vector<bool>& isMeasure
     const std::vector<bool> isMeasured = inLargeComponents(graph, isMeasuredInWhole);
     const LocalResiduals residuals = localResiduals(graph, whole.X, isMeasured);
     if ((isWhite || isCorrelated) && areAlike(graph, whole.X, residuals, isMeasured)) return {};
-    NoiseField field = measureNoiseField(graph, whole.X, isMeasured, residuals,
-                                         isCorrelated ? kMinCertainOfCorrelated : 0.0);
+    NoiseField field = measureNoiseField(graph, whole.X, isMeasured, residuals);
     if (!field.isAny()) return {};
     std::vector<bool> isNoisy(isMeasured);
     for (Index i = 0; i < field.height.size(); ++i)

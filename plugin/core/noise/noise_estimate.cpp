@@ -310,21 +310,17 @@ bool isCoarserNoise(const FaceGraph& graph, const Points& X, const Points& N,
     constexpr int kCount = 4, kOctave = 2, kPlace = 32;
     // Of the rise: 1.04 and less with noise of .15 edges of the coarser mesh, 1.09 and more on
     // fractal ground.
-    constexpr double kMaxRise = 2.03, kMaxGrowth = 1.05;
+    constexpr double kMaxGrowth = 1.05;
     const OctaveDeviations octaves = octaveDeviations(graph, X, N, isMeasured, kCount);
     const Octaves height = (octaves.white > 0.0).select(octaves.shape / octaves.white, 0.0);
-    if (!(height[1] < kMaxRise * height[0] && height[2] < kMaxRise * height[1] &&
-          height[3] * height[1] < kMaxGrowth * height[2] * height[2]))
-        return false;
-    // On meshes of noise subdivided once, in this order: .76 to .8, 1.4 and less, 2.6 and more. A
-    // shape that ends so has .62 and 2.4 (many_small_holes); knurls have a kurtosis of 2.3.
-    constexpr double kMinLow = 0.7, kMaxHigh = 1.8, kMinKurtosis = 2.45;
+    if (!(height[3] * height[1] < kMaxGrowth * height[2] * height[2])) return false;
+    // On meshes of noise subdivided once 1.4 and less, 2.6 and more. A shape that ends so has 2.4
+    // (many_small_holes); knurls have a kurtosis of 2.3.
+    constexpr double kMaxHigh = 1.8, kMinKurtosis = 2.45;
     const Eigen::VectorXd squares = octaves.along[kOctave].cwiseAbs2();
     const Eigen::VectorXd place = LocalAverage(graph.vertices, isMeasured, kPlace).of(squares);
     const std::vector<double> places = moduliOf(place, isMeasured);
-    const double median = quantile(places, 0.5);
-    return quantile(places, 0.1) > kMinLow * kMinLow * median &&
-           quantile(places, 0.95) < kMaxHigh * kMaxHigh * median &&
+    return quantile(places, 0.95) < kMaxHigh * kMaxHigh * quantile(places, 0.5) &&
            kurtosis(squares, place, isMeasured) > kMinKurtosis;
 }
 

@@ -23,8 +23,6 @@ struct Limits {
 // Clean meshes of ../shared/data and decimated ones have +.07 and more; igea, whose stone is as
 // rough as weak noise once it is decimated to 4,000 to 15,000 vertices, has -.17 up to .1 edges.
 constexpr Limits kCertain{-0.1, 0.12}, kCertainWeak{-0.18, 0.06}, kPossible{0.15, 0.03};
-constexpr double kMinQualityOfPlace =
-    0.5;  // of the triangles: needles have no residuals to compare
 
 using Flags = std::vector<bool>;
 using Pair = Eigen::Matrix<double, Eigen::Dynamic, 2, Eigen::RowMajor>;
@@ -126,21 +124,6 @@ Heights heightsOf(const FaceGraph& graph, const Points& X, const Points& N, cons
     heights.fine = LocalAverage(graph.vertices, isMeasured, kNarrow)
                        .deviation(Eigen::VectorXd(octaves.col(0)));
     return heights;
-}
-
-/// 4 sqrt(3) area / (sum of squared sides), 1 for equilateral triangles, in the place of each
-/// vertex.
-Eigen::VectorXd localQuality(const FaceGraph& graph, const Points& X) {
-    const std::vector<double> quality = triangleQuality(graph.F, X);
-    Eigen::VectorXd mean(X.rows());
-    for (Index i = 0; i < X.rows(); ++i) {
-        double sum = 0.0;
-        for (Index k = graph.faces.first[i]; k < graph.faces.first[i + 1]; ++k)
-            sum += quality[graph.faces.at[k]];
-        mean[i] = sum / static_cast<double>(std::max<Index>(graph.faces.degree(i), 1));
-    }
-    const Flags all(static_cast<std::size_t>(X.rows()), true);
-    return LocalAverage(graph.vertices, all, kWide).of(std::move(mean));
 }
 
 /// Height at every vertex in edges of the place, 0 where there is no noise.
@@ -258,7 +241,7 @@ NoiseField NoiseField::ofHeights(const FaceGraph& graph, const Points& X,
 }
 
 NoiseField measureNoiseField(const FaceGraph& graph, const Points& X, const Flags& isMeasured,
-                             const LocalResiduals& local, double leastCertain) {
+                             const LocalResiduals& local) {
     const VertexGraph& vertices = graph.vertices;
     const Index n = X.rows();
     const auto clipped = [&] {
@@ -268,18 +251,15 @@ NoiseField measureNoiseField(const FaceGraph& graph, const Points& X, const Flag
     const LocalAverage wide(vertices, isMeasured, kWide);
     const Eigen::VectorXd correlation = localCorrelation(vertices, wide, clipped);
     NoiseField field;
-    const Index certain = (correlation.array() < kCertain.correlation).count();
-    if (certain == 0 || static_cast<double>(certain) < leastCertain * static_cast<double>(n))
-        return field;
+    if (!(correlation.array() < kCertain.correlation).any()) return field;
 
     field.edge = localEdges(vertices, X);
-    const Eigen::VectorXd quality = localQuality(graph, X);
     const Heights heights = heightsOf(graph, X, local.N, isMeasured, wide, field.edge);
     Flags isCertain(static_cast<std::size_t>(n)), isPossible(isCertain);
     for (Index i = 0; i < n; ++i) {
         const auto isWithin = [&](const Limits& limits) {
-            return isMeasured[i] && quality[i] > kMinQualityOfPlace &&
-                   correlation[i] < limits.correlation && heights.wide[i] > limits.height;
+            return isMeasured[i] && correlation[i] < limits.correlation &&
+                   heights.wide[i] > limits.height;
         };
         isCertain[i] = isWithin(kCertain) || isWithin(kCertainWeak);
         isPossible[i] = isWithin(kPossible);

@@ -65,9 +65,7 @@ struct NoiseField {
 ///
 /// @param X           n x 3 positions.
 /// @param isMeasured  n: whether a vertex counts; not those on rims.
-/// @param leastCertain  share of the vertices below which there is no field, 0 to 1.
 NoiseField measureNoiseField(const FaceGraph& graph, const Points& X,
-                             const std::vector<bool>& isMeasured, const LocalResiduals& residuals,
-                             double leastCertain = 0.0);
+                             const std::vector<bool>& isMeasured, const LocalResiduals& residuals);
 
 }  // namespace spectral

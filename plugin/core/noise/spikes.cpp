@@ -98,18 +98,6 @@ void dropClusters(const VertexGraph& graph, const Eigen::VectorXd& height,
     }
 }
 
-/// Sets the count and the clustering of the spikes.
-void updateStatistics(const VertexGraph& graph, Spikes& spikes) {
-    double neighbours = 0.0, both = 0.0;
-    spikes.count = (spikes.height.array() != 0.0).count();
-    for (Index i = 0; i < graph.size(); ++i)
-        for (Index k = graph.first[i]; spikes.height[i] != 0.0 && k < graph.first[i + 1]; ++k) {
-            neighbours += 1.0;
-            both += spikes.height[graph.at[k]] != 0.0 ? 1.0 : 0.0;
-        }
-    spikes.clustering = neighbours > 0.0 ? both / neighbours / spikes.share() : 0.0;
-}
-
 }  // namespace
 
 Spikes findSpikes(const FaceGraph& graph, const Points& X, const std::vector<bool>& mayMove,
@@ -149,7 +137,7 @@ Spikes findSpikes(const FaceGraph& graph, const Points& X, const std::vector<boo
     const Eigen::VectorXd r = L.residual(X, spikes.N);
     dropClusters(vertices, heightsOf(isSpike, L, r), isSpike);
     spikes.height = heightsOf(isSpike, L, r);
-    updateStatistics(vertices, spikes);
+    spikes.count = (spikes.height.array() != 0.0).count();
     return spikes;
 }
 
@@ -170,7 +158,7 @@ Spikes certainSpikes(const FaceGraph& graph, const Points& X, Spikes spikes, dou
               after < (1.0 - kMinExplained) * before))
             spikes.height[i] = 0.0;
     }
-    updateStatistics(vertices, spikes);
+    spikes.count = (spikes.height.array() != 0.0).count();
     return spikes;
 }
 

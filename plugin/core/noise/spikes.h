@@ -11,9 +11,6 @@ struct Spikes {
     Eigen::VectorXd height;  ///< n: height along N, length units; 0 where there is no spike.
     Points N;                ///< n x 3 unit normals.
     Index count = 0;         ///< Number of spikes.
-    /// Share of spikes among the neighbours of spikes, over that among all vertices: 0.8 to 1.6 for
-    /// spikes, which are independent of one another, and 2.6 or more for creases and details.
-    double clustering = 0.0;
 
     double share() const { return double(count) / double(height.size()); }
 };

@@ -19,7 +19,6 @@ namespace {
 struct Multiples {
     double step = 0.0;          ///< 0 if there is no grid.
     Eigen::VectorXi multiples;  ///< n: each coordinate in steps.
-    Index levels = 0;           ///< Number of different multiples.
 };
 
 /// @param minShared   vertices that share a level; others, such as moved ones, do not count for the
@@ -51,7 +50,7 @@ Multiples multiplesOf(const Eigen::VectorXd& coordinates, std::size_t minShared,
     const Eigen::ArrayXd multiples = (coordinates.array() - levels.front()) / step;
     const Index offGrid = ((multiples - multiples.round()).abs() > kTolerance).count();
     if (static_cast<double>(offGrid) > maxOffGrid * static_cast<double>(sorted.size())) return {};
-    return {step, multiples.round().cast<int>(), static_cast<Index>(levels.size())};
+    return {step, multiples.round().cast<int>()};
 }
 
 /// Where all vertices are on the grid, or else where the commonest levels make one.
@@ -75,7 +74,6 @@ std::optional<CoordinateGrid> coordinateGrid(const Points& X, bool areAllOn) {
         if (axes[c].step == 0.0) return std::nullopt;
         grid.step[c] = axes[c].step;
         grid.multiples.col(c) = axes[c].multiples;
-        grid.levels = std::max(grid.levels, axes[c].levels);
     }
     return grid;
 }
@@ -147,9 +145,7 @@ std::vector<Eigen::Matrix3d> latticeAxes(const FaceGraph& graph, const Points& X
 
 std::optional<Eigen::RowVector3d> voxelLattice(const CoordinateGrid& grid, bool areAllOn) {
     const double minShareOnEdges = areAllOn ? 0.97 : 0.75;  // 3/8 at random
-    constexpr Index kMinVerticesPerLevel = 8;  // on average: many vertices share a plane
     const Index n = grid.multiples.rows();
-    if (kMinVerticesPerLevel * (grid.levels - 1) > n) return std::nullopt;
     // Try all eight choices of which multiples are whole voxels.
     for (int shift = 0; shift < 8; ++shift) {
         Index onEdges = 0;

@@ -12,7 +12,6 @@ namespace spectral {
 struct CoordinateGrid {
     Eigen::RowVector3d step;  ///< Distance of its planes along each axis, length units.
     Eigen::Matrix<int, Eigen::Dynamic, 3> multiples;  ///< n x 3: each coordinate in steps.
-    Index levels = 0;  ///< Largest number of planes with vertices along an axis.
 };
 
 /// The grid of the vertices X (n x 3); none if along some axis there is no grid.
