@@ -26,8 +26,8 @@ struct Field : Parameter {
         return std::move(*this);
     }
     /// @param words  the range, if it is not one of numbers.
-    Field&& in(std::string name, std::string words = {}) && {
-        unit = std::move(name);
+    Field&& in(std::string itsUnit, std::string words = {}) && {
+        unit = std::move(itsUnit);
         range = std::move(words);
         return std::move(*this);
     }
