@@ -64,7 +64,8 @@ class Subject:
     def artefacts(self, options: FilterOptions) -> Artefacts:
         """Measure the artefacts that a filter leaves, above twice its own cutoff."""
         if options not in self._artefacts:
-            size = options.feature_size.in_units_of_mesh(self.diagonal, mean_edge(self.V, self.F))
+            edge = mean_edge(self.V, self.F)
+            size = options.sizes(self.diagonal, edge, self.diagonal)["feature_size"]
             self._artefacts[options] = measure_artefacts(self.filtered(options), self.F, size)
         return self._artefacts[options]
 

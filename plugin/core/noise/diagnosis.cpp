@@ -255,7 +255,12 @@ Diagnosis diagnoseWhole(const FaceGraph& graph, const Points& X,
     noise.isUnderShape = noise.isUnderShape && !areNeedles;
     if (isRising || noise.isShape) return diagnosis;
     if (noise.size > 1.0) {
-        diagnosis.kind = NoiseKind::Correlated;
+        // Mean edges that are certainly noise: .04 to .05 on a sheet with many holes and white
+        // noise of .05 (many_small_holes); .076 on a scan by structured light (sl-cadm of
+        // ../shared/views).
+        constexpr double kMinCorrelated = 0.06;
+        if ((isCoarser ? 1.0 : noiseShare(correlation)) * noise.height >= kMinCorrelated * edge)
+            diagnosis.kind = NoiseKind::Correlated;
         return diagnosis;
     }
     if (!isWhite && !noise.isUnderShape && noise.height < kHighNoise * edge &&

@@ -40,8 +40,8 @@ REFUSED: tuple[tuple[str, dict[str, Any], str], ...] = (
     (HARMONICS, {"mode": -1}, "mode = -1"),
     (HARMONICS, {"mode": 20, "basis_size": 20}, "modes 0 to 19"),
     (HARMONICS, {"basis_size": 1202}, "at most 1201"),
-    (HARMONICS, {"basis_size": 0}, "at least 2"),
-    (HARMONICS, {"basis_size": -5, "store_basis": True}, "at least 2"),
+    (HARMONICS, {"basis_size": 0}, "at least 1"),
+    (HARMONICS, {"basis_size": -5, "store_basis": True}, "at least 1"),
     (HARMONICS, {"mode": 0, "basis_size": 1}, "at least 2"),
     (SPECTRUM, {"basis_size": -1}, "basis_size"),
 )
