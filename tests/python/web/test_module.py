@@ -171,7 +171,8 @@ def test_every_filter_gives_in_node_what_it_gives_in_python(
 def test_mistakes_have_the_same_text_in_node_and_the_next_run_is_right(
     runs: Runs, decimated: Any
 ) -> None:
-    inputs = inputs_named("bunny", decimated)
+    # Of so many faces that an ideal response needs too many harmonics.
+    inputs = inputs_named("bunny", lambda name: decimated(name, 2400))
     right = Call(DENOISE, {})
     for how in {mistake[3] for mistake in MISTAKES}:
         runs.mesh(how or "whole", spoiled(inputs, how))
