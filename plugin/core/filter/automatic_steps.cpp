@@ -76,8 +76,8 @@ class Limit {
             logAreasAround(laplacians_.current().W, laplacians_.faces(), Y) - quarter;
         replace({}, std::move(Y));
         // The distance is an error of first order; that of second order is to it as the distance is
-        // to the displacement, or more where areas shrink ever faster, which grow ever more slowly
-        // where they grow. What has gone in the first quarter is noise.
+        // to the displacement, or more where areas shrink, since they do so ever faster. Where they
+        // grow, they do so ever more slowly. What has gone in the first quarter is noise.
         constexpr double kMostOfGrowing = 0.1;
         const Eigen::ArrayXd moved = distances(Y_, X_).array();
         for (Index i = 0; i < errors_.size(); ++i) {

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable, Mapping
 from itertools import zip_longest
 from typing import Any
@@ -38,6 +39,11 @@ class Warned(str):
 
     def __getnewargs__(self) -> tuple[str, str]:  # type: ignore[override]
         return self.code, str(self)
+
+    @property
+    def kind(self) -> tuple[str, str]:
+        """Code and text without numbers: a code has several, such as one for each unused option."""
+        return self.code, re.sub(r"\d[\d.e+-]*", "0", self)
 
     def of(self, name: str) -> Warned:
         """Return the warning with the name of what it is about, if any."""

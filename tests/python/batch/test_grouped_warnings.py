@@ -15,17 +15,19 @@ from meshlab_spectral.warned import KINDS, Warned, warned, with_warnings
 SOURCE = Path(meshlab_spectral.__file__).parent
 
 
-def test_warnings_of_one_code_are_one() -> None:
+def test_warnings_that_differ_in_numbers_alone_are_one() -> None:
     near, coarse = "nearly_joined", "below_edges"
+    unused = [Warned("unused_option", f"{name} has no effect") for name in ("order", "passes")]
     groups = grouped_warnings(
         {
             "b.ply": [Warned(near, "12 vertices near 1.5e-7 others"), Warned("x", "3 vertices")],
-            "a.ply": [Warned(near, "a vertex near another")],
+            "a.ply": [Warned(near, "3 vertices near 2e-7 others"), *unused],
             "c.glb": [Warned(coarse, "0: too coarse"), Warned(coarse, "1: too coarse")],
         }
     )
     assert groups == [
-        {"code": near, "warning": "a vertex near another", "files": ["a.ply", "b.ply"]},
+        {"code": near, "warning": "3 vertices near 2e-7 others", "files": ["a.ply", "b.ply"]},
+        *({"code": "unused_option", "warning": one, "files": ["a.ply"]} for one in unused),
         {"code": "x", "warning": "3 vertices", "files": ["b.ply"]},
         {"code": coarse, "warning": "0: too coarse", "files": ["c.glb"]},
     ]

@@ -75,7 +75,7 @@ def plan_batch(
     if settings.joined:
         if described.get("result") == "details" or described.get("store_noise_height"):
             raise OptionError(
-                "joined files cannot hold details or the height of noise: leave out these or joined"
+                "joined files cannot hold details or the height of noise: leave out one of them"
             )
         work = {"task": "joined", "filter": work["task"], "options": described}
         # What becomes of a file depends on the others.

@@ -136,16 +136,16 @@ class Report:
 
 
 def grouped_warnings(warnings: Mapping[str, Sequence[Warned]]) -> list[dict[str, Any]]:
-    """Group warnings of many files by their codes, most frequent first.
+    """Group warnings of many files that differ in numbers alone, most frequent first.
 
     `warnings` maps the name of each file to its warnings. Each group has "code", "warning", the
     text in the first file, and "files", the names of all of them.
     """
-    groups: dict[str, dict[str, Any]] = {}
+    groups: dict[tuple[str, str], dict[str, Any]] = {}
     for name, texts in sorted(warnings.items()):
         for text in texts:
             new = {"code": text.code, "warning": text, "files": []}
-            group = groups.setdefault(text.code, new)
+            group = groups.setdefault(text.kind, new)
             if group["files"][-1:] != [name]:  # several meshes of a file may share it
                 group["files"].append(name)
     return sorted(groups.values(), key=lambda group: -len(group["files"]))

@@ -13,6 +13,7 @@ import typer
 
 from meshlab_spectral.batch.settings import Settings
 from meshlab_spectral.cli.command_line import DENOISE, GROUP_OF, SOLVER, Command, with_parameters
+from meshlab_spectral.cli.messages import in_shell
 from meshlab_spectral.errors import OptionError
 from meshlab_spectral.files.presets import (
     PRESETS,
@@ -153,7 +154,7 @@ def with_options(
                 try:
                     arguments[_OBJECTS[table]] = table(**{name: values.pop(name) for name in names})
                 except OptionError as error:
-                    raise typer.BadParameter(f"--{error}") from error
+                    raise typer.BadParameter(in_shell(error)) from error
             if values:
                 arguments["explicit"] = {
                     name: value

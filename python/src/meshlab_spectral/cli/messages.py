@@ -63,16 +63,21 @@ def errors_reported(when_interrupted: str = "no output was written") -> Iterator
     except SpectralError as error:
         if VERBOSITY.debug:
             MESSAGES.print_exception()
-        print_error(_in_shell(error))
+        print_error(in_shell(error))
         usage = isinstance(error, OptionError | FormatError | InputError)
         raise typer.Exit(EXIT_USAGE if usage else EXIT_FAILED) from error
 
 
-def _in_shell(error: SpectralError) -> str:
-    """Name an option that an error begins with as a shell does."""
+def in_shell(error: SpectralError) -> str:
+    """Name options that an error begins with as a shell does."""
     if not isinstance(error, OptionError):
         return str(error)
-    return re.sub(r"^(\w+) = ", lambda name: f"--{name[1].replace('_', '-')} ", str(error))
+    options, colon, text = str(error).partition(": ")
+    return (
+        re.sub(r"(?<![^ ])(\w+) = ", lambda name: f"--{name[1].replace('_', '-')} ", options)
+        + colon
+        + text
+    )
 
 
 def print_result(result: Table | object) -> None:

@@ -37,7 +37,7 @@ def followed(
 ) -> dict[str, Any]:
     """Return those arrays in `data` that depend on positions, for vertices moved from V to X.
 
-    Normals turn as the surface does, those of files, too; tangents are made perpendicular to
+    Normals turn as the surface does, as those of files do; tangents are made perpendicular to
     them. What has no direction in the new shape stays.
 
     Parameters
@@ -111,7 +111,9 @@ def _moved(
         against = corners.sum(axis=1) > 1
         if _MIXED < (against.mean() if against.size else 0.0) < 1 - _MIXED:
             faces = np.where(against[:, None], faces[:, [0, 2, 1]], faces)
-            normals = _units(vertex_normals(V, faces), normals)
+            before, after = (vertex_normals(points, faces) for points in (V, X))
+            turn = (before != after).any(axis=1, keepdims=True)
+            normals = np.where(turn, _units(before, normals), normals)
         moved = following_normals(V, X, faces, normals)
     return moved.astype(given.dtype)
 

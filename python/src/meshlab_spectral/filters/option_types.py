@@ -75,7 +75,7 @@ def option(
     flags, metavar
         How a command spells the option, unless like its name, and what it calls the value.
     **facts
-        "least", the smallest number, or "range", in words.
+        "range", that of a number in words.
     """
     return field(
         default=default,

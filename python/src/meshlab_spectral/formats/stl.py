@@ -188,6 +188,6 @@ def open_rows(path: Path) -> MeshRows:
         head = file.read(HEADER)
     count = _count(head)
     if path.stat().st_size != _size(head) or not count:
-        raise UntiledError(f"{path.name} is no binary STL file: convert it to binary PLY first")
+        raise UntiledError(f"{path.name} is not a binary STL file: convert it to binary PLY first")
     block = np.memmap(path, TRIANGLE, "r", HEADER, count)
     return _StlRows(path=path, points=3 * count, faces=count, block=block, begin=HEADER)

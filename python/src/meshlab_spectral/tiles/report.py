@@ -92,10 +92,10 @@ def singular_part(reports: list[dict[str, Any]]) -> float:
 
 def _warnings(reports: list[dict[str, Any]]) -> list[Warned]:
     """Return each kind of warning once, although its numbers differ from tile to tile."""
-    kinds: dict[str, list[Warned]] = {}
+    kinds: dict[tuple[str, str], list[Warned]] = {}
     for one in reports:
-        for warning in warned(one):
-            kinds.setdefault(warning.code, []).append(warning)
+        for kind, warning in {each.kind: each for each in warned(one)}.items():
+            kinds.setdefault(kind, []).append(warning)
     return [
         first
         if len({first, *others}) == 1 and 1 + len(others) == len(reports)
