@@ -173,10 +173,13 @@ def _failures_of_result(example: dict[str, Any], run: Run) -> list[str]:
         # MeshLab leaves normals of zero-area faces undefined.
         if name not in run.after or "normal" in name:
             continue
-        if not np.isfinite(run.after[name]).all():
-            found.append(f"not finite: {name}")
-        if name in run.before and run.after[name].shape != run.before[name].shape:
+        values, before = run.after[name], run.before.get(name)
+        if before is not None and values.shape != before.shape:
             found.append(f"another size: {name}")
+            continue
+        # A quality that lacks, which is NaN, stays.
+        if not (np.isfinite(values) | (before is not None and np.isnan(before))).all():
+            found.append(f"not finite: {name}")
     for name, value in run.report.items():
         if not np.isfinite(np.asarray(value, float)).all():
             found.append(f"not finite in the report: {name} = {value}")
