@@ -55,7 +55,8 @@ TARGETS = {
 REMEDY = re.compile(
     r"[Cc]hoose|apply |load or create|scale the mesh|reconstruct|delete them|must be|lies between|"
     r"has the modes|a positive number|must be finite|above zero|[Mm]ust be a value between|"
-    r"Possible values|between 0 and 100|select faces or|Select the side|give at most|give points as|to one unit"
+    r"Possible values|between 0 and 100|select faces or|Select the side|give at most|"
+    r"give points as|to one unit"
 )
 # These have no remedy other than to look at the mesh.
 PLAIN = re.compile(r"zero area: the mesh is a line or a point")
