@@ -1,6 +1,7 @@
 #include "core/analysis/surface_texture.h"
 
 #include <algorithm>
+#include <cmath>
 #include <iomanip>
 #include <sstream>
 #include <string>
@@ -200,6 +201,10 @@ FilterOutput run(const FilterInput& input, const MeshLengths& mesh, const Values
         options.waviness = 0.0;
     Measured texture{surfaceTexture(input.V, input.F, options, progress), options.waviness,
                      options.noise};
+    if (!std::isfinite(texture.Sq))
+        throw SolverFailure(ErrorCode::SingularMatrix,
+                            "the heights are lost in round-off: parts of the mesh are too far "
+                            "apart, or too different in size");
     FilterOutput output;
     output.report = reportOf(textureEntries(), texture);
     output.text = textOf(texture);
