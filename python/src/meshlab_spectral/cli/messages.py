@@ -73,8 +73,9 @@ def in_shell(error: SpectralError) -> str:
     if not isinstance(error, OptionError):
         return str(error)
     options, colon, text = str(error).partition(": ")
+    # In small letters: a variable of the environment keeps its name.
     return (
-        re.sub(r"(?<![^ ])(\w+) = ", lambda name: f"--{name[1].replace('_', '-')} ", options)
+        re.sub(r"(?<![^ ])([a-z]\w*) = ", lambda name: f"--{name[1].replace('_', '-')} ", options)
         + colon
         + text
     )
