@@ -26,42 +26,24 @@ from fractional import (
     saved_vertices,
     vertices,
 )
+from helpers import other_options
 from meshlab import MeshLab
 from meshlab_spectral import FilterOptions
 from meshlab_spectral._core import filters, presets
 from scene import scene_of, share_changed
 from waiting import wait_for
 
-# A value other than the default for every parameter; together a filter that works on the bunny.
-OTHER_VALUES = {
-    "filter_type": "band-pass",
-    "feature_size": "8",
-    "power": "0.5",
-    "pass_gain": "0.5",
-    "stop_gain": "0.25",
-    "transfer_function": "10%:1, 5%:0.5",
-    "band_width": "2",
-    "response": "butterworth",
-    "order": "3",
-    "selected": "false",
-    "steps": "2",
-    "tolerance": "0.25",
-    "passes": "1",
-    "basis_update": "full",
-    "conformal_share": "0.5",
-    "spectrum": "truncated",
-    "basis_size": "40",
-    "reinject_residual": "false",
-    "laplacian": "cotangent",
-    "boundary": "fixed",
-    "crease_angle": "150",
-    "preserve_volume": "false",
-    "max_displacement": "20",  # per cent
-    "weight": "none",
-    "result": "filtered shape",
-    "color_by_displacement": "true",
-    "keep_original": "true",
-}
+# For every parameter but three, which stay as they are: see the test.
+OTHER_VALUES = other_options(
+    feature_size="8%",
+    stop_gain=0.25,
+    band_width=2.0,
+    tolerance="0.25%",
+    basis_size=40,
+    crease_angle=150.0,
+    max_displacement="20%",
+)
+OTHER_VALUES |= {"color_by_displacement": True, "keep_original": True}
 
 
 def test_the_dialog_shows_every_parameter_with_its_default(
@@ -116,7 +98,8 @@ def test_every_parameter_set_in_the_dialog_is_in_the_copied_call_and_the_saved_s
     dialog.show_advanced()
     assert list(OTHER_VALUES) == PARAMETERS
     for row, value in zip(dialog.rows(), OTHER_VALUES.values(), strict=True):
-        dialog.set_value(row, value)
+        typed = str(value)
+        dialog.set_value(row, typed.lower() if isinstance(value, bool) else typed.rstrip("%"))
     call = dialog.pymeshlab_call()
     # These keep their defaults, which a call leaves out: the bunny has no selection or quality,
     # details would leave nothing to compare, and so large an offset to preserve the volume would

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 import pymeshlab
 import pytest
+from meshlab_spectral._core import filters
 from meshlab_spectral.files.meshes import filter_to_scratch
 from meshlab_spectral.files.whole_files import writing_whole
 from meshlab_spectral.filters.option_types import Options
@@ -93,6 +94,50 @@ def lower_part(V: NDArray[Any], F: NDArray[Any]) -> tuple[NDArray[Any], NDArray[
     below = V[:, 2] < np.median(V[:, 2])
     used, index = np.unique(F[below[F].all(axis=1)], return_inverse=True)
     return V[used], index.reshape(-1, 3)
+
+
+def other_options(**chosen: Any) -> dict[str, Any]:
+    """Return a value other than the default for every option of the filter, most by its kind.
+
+    A bare mesh has no selection and no quality, and details would be no shape to compare: these
+    three options keep their defaults.
+    """
+    chosen = {
+        "filter_type": "band-pass",
+        "transfer_function": "10%:1, 5%:0.5",
+        "steps": 2,
+        "selected": False,
+        "weight": "none",
+        "result": "filtered shape",
+        **chosen,
+    }
+    (contract,) = (one for one in filters() if one["python_name"] == FILTER)
+    return {
+        one["name"]: chosen[one["name"]] if one["name"] in chosen else _other_value(one)
+        for one in contract["parameters"]
+    }
+
+
+def _other_value(parameter: dict[str, Any]) -> Any:
+    default = parameter["default"]
+    match parameter["kind"]:
+        case "bool":
+            return not default
+        case "choice":
+            return parameter["choices"][int(default == 0)]
+        case "length":
+            return "1%"
+        case "int":
+            return default + 1
+    return 0.5
+
+
+def as_percentages(options: dict[str, Any]) -> dict[str, Any]:
+    """Turn options that are percentages into pymeshlab's type."""
+    return {
+        name: percent(float(value[:-1])) if str(value).endswith("%") else value
+        for name, value in options.items()
+    }
 
 
 def percent(value: float) -> pymeshlab.PercentageValue:

@@ -21,9 +21,12 @@ from hypothesis import strategies as st
 from meshlab_spectral.errors import MeshFileError
 from meshlab_spectral.files.meshes import load_parts
 from meshlab_spectral.formats.opening import open_document
+from meshlab_spectral.formats.table import FORMATS
 
-ENDINGS = ["ply", "obj", "off", "stl", "gltf", "glb", "3mf", "vtk", "vtp", "vtu", "gii", "pial"]
-ENDINGS += ["usda", "usdc", "usdz"] if find_spec("pxr") else []
+# Without .usd, which is .usda or .usdc, and packed GIFTI, which is gzip.
+ENDINGS = [ending for ending in FORMATS if FORMATS[ending].is_patched] + ["pial"]
+ENDINGS = [one for one in ENDINGS if one not in ("usd", "gii.gz")]
+ENDINGS = [one for one in ENDINGS if not one.startswith("usd") or find_spec("pxr")]
 # Formats that each other's readers read, too.
 ALIKE = [{"gltf", "glb"}, {"gii", "pial"}]
 TEXTS = ["in.ply", "in.obj", "in.off", "in.stl", "in.gltf", "text.vtk", "in.surf.gii"]

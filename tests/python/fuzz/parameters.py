@@ -6,6 +6,7 @@ from typing import Any
 
 import pymeshlab
 from hypothesis import strategies as st
+from meshlab_spectral._core import filters
 
 NAN, INFINITY = float("nan"), float("inf")
 LARGEST_INTEGER = 2**31 - 1
@@ -27,92 +28,41 @@ _GAINS = _of(
     (1.0, 0.0, 0.05, 0.5, 2.0, 10.0, 1e-30, 1e-60, 1e6, 1e30, -0.0),
     (1e39, -1e-9, -1.0, NAN, INFINITY),
 )
-_STEPS = _of((0, 1, 2, 3, 10, 20), (-1, -LARGEST_INTEGER))
-_BASIS_SIZES = _of((5, 2, 3, 20, 49, 100), (1, 0, -1, 10_000, LARGEST_INTEGER))
-
-
-def _choice(count: int) -> st.SearchStrategy[int]:
-    return _of(tuple(range(count)), (-1, count))
-
-
-_LAPLACIAN, _BOUNDARY = _choice(3), _choice(2)
-
-_TRANSFER: dict[str, st.SearchStrategy[Any]] = {
-    "filter_type": _choice(5),
+# Those of a parameter, whichever filters have it, or else of its kind.
+_BY_NAME = {
     "transfer_function": _of(
         ("20%:1, 5%:2, 1%:0.1", "6e:0.5", "1/(1 + w^4)", "w < 1", "1 + exp(-l/f)", "0"),
         ("", ":", "5%", "1 - w", "q", "5%:1,5%:2", "0*log(-w)", "w/0", "(" * 500, "1e999"),
     ),
-    "feature_size": _SIZES,
-    "pass_gain": _GAINS,
-    "stop_gain": _GAINS,
     "band_width": _of((1.0, 2.0, 0.3, 1e-6, 60.0, 1e30), (1e-60, 0.0, -1.0, NAN)),
-    "response": _choice(3),
     "order": _of((2, 1, 8, 64), (0, 65, -1, LARGEST_INTEGER)),
     "power": _of((1.0, 0.5, 0.1, 1e-9), (1e-60, 0.0, -0.1, 1.000001, 2.0, NAN)),
+    "steps": _of((0, 1, 2, 3, 10, 20), (-1, -LARGEST_INTEGER)),
+    "passes": _of((0, 1, 2, 3), (-1, 10, 1000)),
+    "conformal_share": _of((1.0, 0.5, 0.1, 1e-9, 1e-60, 0.0), (-0.1, 1.000001, 2.0, NAN)),
+    "crease_angle": _of((0.0, 30.0, 60.0, 90.0, 180.0, 1e-30), (-1.0, 180.1, NAN, INFINITY)),
+    "strength": _of((1.0, 0.5, 3.0, 0.0, 1e-30, 1e30), (-1.0, NAN, INFINITY)),
+    "mode": _of((1, 0, 2, 4), (19, -1, LARGEST_INTEGER)),
 }
-_SIGNALS = {**_TRANSFER, "selected": st.booleans(), "laplacian": _LAPLACIAN, "boundary": _BOUNDARY}
+_BY_KIND = {
+    "bool": st.booleans(),
+    "length": _SIZES,
+    "float": _GAINS,
+    "int": _of((5, 2, 3, 20, 49, 100), (1, 0, -1, 10_000, LARGEST_INTEGER)),
+}
+
+
+def _values_of(parameter: dict[str, Any]) -> st.SearchStrategy[Any]:
+    if parameter["kind"] == "choice":
+        count = len(parameter["choices"])
+        return _of(tuple(range(count)), (-1, count))
+    name = parameter["name"]
+    return _BY_NAME[name] if name in _BY_NAME else _BY_KIND[parameter["kind"]]
+
 
 PARAMETERS: dict[str, dict[str, st.SearchStrategy[Any]]] = {
-    "apply_coord_spectral_filter_fractional": {
-        **_TRANSFER,
-        "steps": _STEPS,
-        "tolerance": _SIZES,
-        "passes": _of((0, 1, 2, 3), (-1, 10, 1000)),
-        "basis_update": _choice(3),
-        "conformal_share": _of((1.0, 0.5, 0.1, 1e-9, 1e-60, 0.0), (-0.1, 1.000001, 2.0, NAN)),
-        "spectrum": _choice(2),
-        "basis_size": _BASIS_SIZES,
-        "reinject_residual": st.booleans(),
-        "laplacian": _LAPLACIAN,
-        "boundary": _BOUNDARY,
-        "selected": st.booleans(),
-        "crease_angle": _of((0.0, 30.0, 90.0, 180.0, 1e-30), (-1.0, 180.1, NAN, INFINITY)),
-        "preserve_volume": st.booleans(),
-        "weight": _choice(2),
-        "result": _choice(2),
-    },
-    "apply_coord_spectral_denoise": {
-        "strength": _of((1.0, 0.5, 3.0, 0.0, 1e-30, 1e30), (-1.0, NAN, INFINITY)),
-        "noise_height": _SIZES,
-        "keep_creases": st.booleans(),
-        "store_noise_height": st.booleans(),
-        "boundary": _BOUNDARY,
-    },
-    "apply_coord_spectral_equalizer": {
-        **{f"gain_{times}x": _GAINS for times in (32, 16, 8, 4, 2, 1)},
-        "smallest_size": _SIZES,
-        "selected": st.booleans(),
-        "boundary": _BOUNDARY,
-        "accurate": st.booleans(),
-    },
-    "apply_scalar_spectral_filter_per_vertex": _SIGNALS,
-    "apply_color_spectral_filter_per_vertex": _SIGNALS,
-    "compute_scalar_spectral_artefacts_per_vertex": {
-        "feature_size": _SIZES,
-        "laplacian": _LAPLACIAN,
-    },
-    "compute_scalar_manifold_harmonic_per_vertex": {
-        "mode": _of((1, 0, 2, 4), (19, -1, LARGEST_INTEGER)),
-        "basis_size": _BASIS_SIZES,
-        "store_basis": st.booleans(),
-        "laplacian": _LAPLACIAN,
-        "boundary": _BOUNDARY,
-    },
-    "compute_scalar_surface_texture_per_vertex": {
-        "waviness": _SIZES,
-        "noise": _SIZES,
-        "form": st.sampled_from(("size", "none", "plane", "sphere", "cylinder")),
-        "form_size": _SIZES,
-        "selected": st.booleans(),
-        "crease_angle": _of((60.0, 0.0, 30.0, 180.0), (-1.0, 181.0, NAN, INFINITY)),
-        "laplacian": _LAPLACIAN,
-    },
-    "get_geometry_spectrum": {
-        "basis_size": _BASIS_SIZES,
-        "laplacian": _LAPLACIAN,
-        "boundary": _BOUNDARY,
-    },
+    one["python_name"]: {each["name"]: _values_of(each) for each in one["parameters"]}
+    for one in filters()
 }
 
 
