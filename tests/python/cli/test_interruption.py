@@ -89,7 +89,7 @@ IMPORTS = {
     "typer": ["batch", "COW", "--output", "out"],
     "rich.progress": ["basis", "COW", "--output", "out/cow.npz"],
     "meshlab_spectral.cli.app": ["--help"],
-    "meshlab_spectral.workers.local": ["batch", "COW", "--output", "out"],
+    "meshlab_spectral.workers.opening": ["batch", "COW", "--output", "out"],
     "psutil": ["spectra", "COW", "--output", "out/spectra.csv"],
     "distributed": ["batch", "COW", "--output", "out", "--scheduler", "tcp://127.0.0.1:1"],
     "distributed.worker": [

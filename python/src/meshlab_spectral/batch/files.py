@@ -148,7 +148,7 @@ def _results(
 ) -> Generator[FileResult, None, None]:
     # Slow imports, not needed by commands for a single file.
     from meshlab_spectral.batch.task import run_job, run_together
-    from meshlab_spectral.workers.local import open_workers
+    from meshlab_spectral.workers.opening import open_workers
 
     settings = batch.settings
     if not settings.joined:

@@ -257,8 +257,8 @@ def _data(path: Path, array: Any, text: str, budget: Budget) -> Any:
             content = zlib.decompressobj().decompress(content, size + 1)
         if len(content) > size:
             raise ValueError(f"an array of {count} numbers has more")
-        whole = len(content) - len(content) % type_.itemsize
-        numbers = np.frombuffer(bytearray(content[:whole]), type_)
+        size_of_all = len(content) - len(content) % type_.itemsize
+        numbers = np.frombuffer(bytearray(content[:size_of_all]), type_)
     else:
         raise ValueError(f"it has an encoding of the number {array.encoding}")
     if len(numbers) != count:

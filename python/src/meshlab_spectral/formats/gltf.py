@@ -206,8 +206,8 @@ def _nodes_of_meshes(asset: Asset) -> tuple[dict[int, list[_Node]], set[int]]:
         found += [(child, matrix, is_default) for child in node.get("children", [])]
         if "mesh" in node:
             # A mesh with a skin is placed by its joints, not by its node.
-            place = node, IDENTITY if "skin" in node else matrix
-            placed[not is_default][node["mesh"]].append(place)
+            node_and_matrix = node, IDENTITY if "skin" in node else matrix
+            placed[not is_default][node["mesh"]].append(node_and_matrix)
     if len(found) < len(nodes):
         raise ValueError("its node hierarchy has a cycle")
     shown, others = placed

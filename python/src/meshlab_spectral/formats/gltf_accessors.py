@@ -231,11 +231,11 @@ def parsed(path: Path, data: bytes) -> Asset:
 
 def numbers_of(entry: Json, key: str, default: list[int]) -> Array:
     """Return the numbers of an entry, as many as by default."""
-    given = entry.get(key, default)
-    is_list = isinstance(given, list) and len(given) == len(default)
-    if not is_list or any(type(x) not in (int, float) for x in given):
+    value = entry.get(key, default)
+    is_list = isinstance(value, list) and len(value) == len(default)
+    if not is_list or any(type(x) not in (int, float) for x in value):
         raise ValueError(f"{key} is not a list of {len(default)} numbers")
-    return np.array(given, dtype=np.float64)
+    return np.array(value, dtype=np.float64)
 
 
 def _bounds(values: Array) -> dict[str, list[float]]:

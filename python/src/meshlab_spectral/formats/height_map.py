@@ -46,12 +46,12 @@ def read(path: Path) -> Document:
         with warnings.catch_warnings(), guarded(budget, _OF_LIBRARY):
             warnings.simplefilter("ignore")
             reader = _of_terrain if path.suffix.lower() in (".tif", ".tiff") else _of_instrument
-            heights, place, unit = reader(path)
+            heights, transform, unit = reader(path)
     except SpectralError:
         raise
     except Exception as error:  # of many kinds: readers of twenty formats
         raise unreadable(path, f"{error!s:.300}" or type(error).__name__) from error
-    vertices, faces = _surface(heights, place)
+    vertices, faces = _surface(heights, transform)
     if not len(faces):
         raise unsupported(
             path, "has no three measured heights next to each other", "measure it again"
@@ -93,9 +93,9 @@ def _quads(grid: NDArray[Any]) -> NDArray[Any]:
     return np.stack(corners, axis=-1).reshape(-1, 4)
 
 
-def _surface(heights: Array, place: _Affine) -> tuple[Array, Indices]:
+def _surface(heights: Array, transform: _Affine) -> tuple[Array, Indices]:
     """Return vertices and triangles of the heights that are finite."""
-    a, b, c, d, e, f = place
+    a, b, c, d, e, f = transform
     row, column = np.indices(heights.shape)
     vertices = np.stack([a * column + b * row + c, d * column + e * row + f, heights], axis=-1)
     there: NDArray[np.bool_] = np.isfinite(heights)

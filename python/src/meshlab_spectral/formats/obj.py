@@ -61,24 +61,24 @@ class _Obj(Document):
     def write(self, target: Path, moved: Sequence[Array]) -> list[Warned]:
         part, after, which = self.parts[0], moved[0], self.which
         before, faces, content = part.vertices, part.faces, self.content
-        starts, normal_starts, given = self.starts, self.normal_starts, self.normals
-        normals, warnings = given, list[Warned]()
-        if len(given):
+        starts, normal_starts, old = self.starts, self.normal_starts, self.normals
+        normals, warnings = old, list[Warned]()
+        if len(old):
             shaded = np.array((which >= 0).all(axis=1))
             if not shaded.all():
                 faces, which = faces[shaded], which[shaded]
             if _is_shared(which, faces).any():
-                given, normals, content = self._split(after, faces, which, shaded)
+                old, normals, content = self._split(after, faces, which, shaded)
                 starts, normal_starts = (lines.starts for lines in _lines(content)[:2])
             else:
-                normals = following_normals(before, after, faces, given, which)
-            if len(given) > len(self.normals):
-                more = len(given) - len(self.normals)
+                normals = following_normals(before, after, faces, old, which)
+            if len(old) > len(self.normals):
+                more = len(old) - len(self.normals)
                 text = f"{more} normals are added, as others serve faces that turn apart"
                 warnings.append(Warned("added_normals", text))
         changes = [(starts, 1, before, after, digits_for(before, after))]
-        if len(given):
-            changes.append((normal_starts, 1, given, normals, SINGLE))
+        if len(old):
+            changes.append((normal_starts, 1, old, normals, SINGLE))
         with target.open("wb") as file:
             write_patched(file, content, changes)
         return warnings + copy_side_files(self.path, target, self.side_files())
@@ -91,9 +91,9 @@ class _Obj(Document):
         Returns the normals before and after, and the text, in which some have become several.
         """
         vertices, normals, lines = _lines(self.content)[:3]
-        before, given, none = self.parts[0].vertices, self.normals, len(vertices)
+        before, old, none = self.parts[0].vertices, self.normals, len(vertices)
         face = np.repeat(np.arange(len(lines)), np.maximum(lines.words - 3, 0))[shaded]
-        several = np.zeros(len(given), bool)
+        several = np.zeros(len(old), bool)
         several[which[_is_shared(which, np.repeat(face[:, None], 3, axis=1))]] = True
 
         def keys_of(normal: Indices, vertex: Indices) -> Indices:
@@ -101,14 +101,14 @@ class _Obj(Document):
 
         keys, corners = np.unique(keys_of(which, faces), return_inverse=True)
         of = keys // (none + 1)
-        new = following_normals(before, after, faces, given[of], corners.reshape(-1, 3))
+        new = following_normals(before, after, faces, old[of], corners.reshape(-1, 3))
         first = first_equal_rows(np.column_stack([of, np.round(new, _DECIMALS)]))
         is_first = first == np.arange(len(keys))
-        counts = np.maximum(np.bincount(of[is_first], minlength=len(given)), 1)
+        counts = np.maximum(np.bincount(of[is_first], minlength=len(old)), 1)
         begins = np.cumsum(counts) - counts
-        place = np.cumsum(is_first) - 1  # among those that differ
-        numbers = (begins[of] + place - place[np.searchsorted(of, of)])[first]
-        result = np.repeat(given, counts, axis=0)
+        rank = np.cumsum(is_first) - 1  # among those that differ
+        numbers = (begins[of] + rank - rank[np.searchsorted(of, of)])[first]
+        result = np.repeat(old, counts, axis=0)
         moved = result.copy()
         moved[numbers] = new
         vertex, normal = _corners(lines, vertices, normals)
@@ -127,9 +127,9 @@ class _Obj(Document):
         """Yield the names of material libraries and their textures."""
         folder = self.path.parent
         for line in dict.fromkeys(map(_name, self.libraries)):
-            whole = _slashed(folder, line)
-            is_one = os.path.isfile(folder / whole)  # noqa: PTH113 - false for impossible names
-            words = [whole] if is_one else [_slashed(folder, w) for w in line.split()]
+            one_name = _slashed(folder, line)
+            is_one = os.path.isfile(folder / one_name)  # noqa: PTH113 - false for impossible names
+            words = [one_name] if is_one else [_slashed(folder, w) for w in line.split()]
             for library in dict.fromkeys(words):
                 yield library
                 try:
@@ -243,7 +243,7 @@ def _corners(faces: Lines, vertices: Lines, normals: Lines) -> tuple[Indices, In
     corners = _indices(found[:, 0], faces, vertices)
     if (corners < 0).any():
         face = np.searchsorted(np.cumsum(faces.words - 1), np.argmax(corners < 0), side="right")
-        line = faces.place(int(face))
+        line = faces.line_number(int(face))
         raise ValueError(f"the face in line {line} has a corner that refers to a missing vertex")
     return corners, _indices(found[:, 1], faces, normals)
 

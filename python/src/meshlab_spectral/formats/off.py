@@ -28,7 +28,7 @@ from meshlab_spectral.formats.document import (
 )
 from meshlab_spectral.formats.normals import area_vectors, following_normals
 from meshlab_spectral.formats.polygons import triangles
-from meshlab_spectral.formats.text import Change, Lines, lines_of, whole, write_patched
+from meshlab_spectral.formats.text import Change, Lines, as_integers, lines_of, write_patched
 from meshlab_spectral.warned import Warned
 
 _REMEDY = "save it as PLY, or as text OFF with vertices x y z"
@@ -173,7 +173,7 @@ def _by_lines(
         raise faces.fault(bad, f"face {bad} has fewer corners than it claims")
     has_colours = bool((faces.words > sizes + 1).any())
     rows = _Rows(table=table, starts=vertices.starts, begin=int(vertices.starts[0]))
-    return rows, (whole(corners), sizes, has_colours)
+    return rows, (as_integers(corners), sizes, has_colours)
 
 
 def _by_words(
@@ -215,7 +215,7 @@ def _faces_in(
             at = int(ends[np.searchsorted(ends, at)])
     if at != len(numbers):
         return None
-    return whole(np.concatenate([numbers[:0], *corners])), np.array(sizes, np.int64)
+    return as_integers(np.concatenate([numbers[:0], *corners])), np.array(sizes, np.int64)
 
 
 def _normals(letters: bytes, table: Array, part: Part) -> int | None:
@@ -234,9 +234,9 @@ def _normals(letters: bytes, table: Array, part: Part) -> int | None:
 
 def _agreement(normals: Array, part: Part) -> float:
     """Return how well vectors at the vertices agree with the shape's normals, up to their sign."""
-    given = normals[part.faces].sum(axis=1)
-    length = np.linalg.norm(given, axis=1)
-    along = np.einsum("ij,ij->i", area_vectors(part.vertices, part.faces), given) / np.where(
+    sums = normals[part.faces].sum(axis=1)
+    length = np.linalg.norm(sums, axis=1)
+    along = np.einsum("ij,ij->i", area_vectors(part.vertices, part.faces), sums) / np.where(
         length > 0, length, 1
     )
     return float(abs(along.sum()))

@@ -44,10 +44,13 @@ def format_of(path: Path) -> str | None:
 
 
 def open_rows(path: Path) -> MeshRows:
-    """Open a binary PLY or STL file in blocks; raise UntiledError if it is neither."""
+    """Open a binary file in blocks; raise UntiledError if that is not possible in its format."""
     known = FORMATS.get(path.suffix[1:].lower())
     if known is None or not known.in_rows:
-        raise UntiledError(f"{path.name} is neither PLY nor STL: convert it to binary PLY first")
+        names = " and ".join(one.name for one in FORMATS.values() if one.in_rows)
+        raise UntiledError(
+            f"only {names} can be read in parts: convert {path.name} to binary PLY first"
+        )
     try:
         rows: MeshRows = _module(known.in_rows).open_rows(path)
     except (ValueError, LookupError, TypeError, OSError, struct.error) as error:

@@ -41,7 +41,13 @@ from meshlab_spectral.formats.normals import following_normals
 from meshlab_spectral.formats.polygons import strip_triangles, triangles
 from meshlab_spectral.formats.rows import Rows
 from meshlab_spectral.formats.side_files import copy_side_files
-from meshlab_spectral.formats.text import BYTE_ORDER_MARK, Lines, lines_of, whole, write_patched
+from meshlab_spectral.formats.text import (
+    BYTE_ORDER_MARK,
+    Lines,
+    as_integers,
+    lines_of,
+    write_patched,
+)
 from meshlab_spectral.warned import Warned
 
 AXES, NORMALS = ("x", "y", "z"), ("nx", "ny", "nz")
@@ -279,8 +285,8 @@ def _sizes_of_rows(
         begin = at
         for is_list in are_lists:
             if is_list:
-                place = int(found[at])
-                at += max(0, int(text[place : place + _LONGEST_SIZE].split(maxsplit=1)[0]))
+                start = int(found[at])
+                at += max(0, int(text[start : start + _LONGEST_SIZE].split(maxsplit=1)[0]))
             at += 1
         sizes.append(at - begin)
     return sizes
@@ -377,7 +383,7 @@ def _places(ply: PlyData, table: _Table, begin: int) -> dict[str, Indices]:
         else:
             within += size
     starts = begin + np.cumsum(within) - within
-    return {name: starts + place for name, place in places.items()}
+    return {name: starts + offset for name, offset in places.items()}
 
 
 def has_floats(element: PlyElement, *names: str) -> bool:
@@ -402,7 +408,7 @@ def _columns(table: _Table, *names: str) -> Array:
 def _corners(table: _Table) -> tuple[Indices, Indices] | None:
     """Return the corners of all faces or strips, and how many each has; None if there are none."""
     found = [table[name] for name in CORNERS if name in table]
-    return (whole(found[0][1]), found[0][0]) if found and len(found[0][0]) else None
+    return (as_integers(found[0][1]), found[0][0]) if found and len(found[0][0]) else None
 
 
 def _read_faces(tables: dict[str, _Table], vertices: Array) -> Indices:

@@ -147,9 +147,9 @@ def _with_all_corners(ears: list[list[int]], size: int) -> list[list[int]]:
 
 def strip_triangles(corners: Indices) -> Indices:
     """Split strips, each terminated by -1, into consistently oriented triangles."""
-    place = np.arange(len(corners))
-    begin = np.maximum.accumulate(np.where(corners < 0, place + 1, 0))
-    odd = (place - begin)[:-2] % 2 == 1
+    index = np.arange(len(corners))
+    begin = np.maximum.accumulate(np.where(corners < 0, index + 1, 0))
+    odd = (index - begin)[:-2] % 2 == 1
     split = np.column_stack([corners[:-2], corners[1:-1], corners[2:]])
     split[odd] = split[odd][:, [0, 2, 1]]
     return split[(split >= 0).all(axis=1)]

@@ -127,7 +127,9 @@ def _read_text(path: Path, content: bytes) -> Document:
     if wrong.any():
         first = int(np.argmax(wrong))
         keyword = _KEYWORDS[expected[first]]
-        raise chosen.fault(first, f"line {chosen.place(first)} does not begin with {keyword!r}")
+        raise chosen.fault(
+            first, f"line {chosen.line_number(first)} does not begin with {keyword!r}"
+        )
     if len(chosen) % len(_FACET):
         raise EndsEarlyError("it ends within a facet")
     facets, corners = chosen[:: len(_FACET)], chosen[chosen.kinds == _KEYWORDS.index("vertex")]

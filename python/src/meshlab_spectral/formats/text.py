@@ -58,7 +58,7 @@ class Lines:
         line = self.line(number)
         return (line.partition(b"#")[0] if self.comments else line).split()
 
-    def place(self, number: int) -> int:
+    def line_number(self, number: int) -> int:
         """Return which line of the text one of the lines is, from 1."""
         newline, carriage_return, both = (
             self.text.count(end, 0, int(self.starts[number])) for end in (b"\n", b"\r", b"\r\n")
@@ -145,7 +145,7 @@ def write_patched(file: IO[bytes], text: bytes, changes: Sequence[Change], begin
     _core.write_patched(text, begin, changes, file.write)
 
 
-def whole(numbers: Array) -> Indices:
+def as_integers(numbers: Array) -> Indices:
     """Return numbers as integers; raise ValueError if one is none."""
     with np.errstate(invalid="ignore"):
         integers = numbers.astype(np.int64)

@@ -27,7 +27,7 @@ from meshlab_spectral.formats.digits import digits_for
 from meshlab_spectral.formats.document import Array, Document, Indices, checked_part
 from meshlab_spectral.formats.names import shown
 from meshlab_spectral.formats.placement import IDENTITY, Placement, placement_of
-from meshlab_spectral.formats.text import Change, whole, write_patched
+from meshlab_spectral.formats.text import Change, as_integers, write_patched
 from meshlab_spectral.warned import Warned
 
 _DECRYPT = "save it without encryption"
@@ -106,11 +106,11 @@ class _Elements:
             self.passed = span.stop
         values, places = _joined(self.values, spans), _joined(self.places, spans)
         for row, column in np.argwhere(np.isnan(values)).tolist():  # blanks or &#49; in it
-            place = int(places[row, column])
-            if place < 0:
+            start = int(places[row, column])
+            if start < 0:
                 raise KeyError(self.attributes[column])
-            end = self.text.index(self.text[place - 1 : place], place)
-            values[row, column] = float(html.unescape(self.text[place:end].decode()))
+            end = self.text.index(self.text[start - 1 : start], start)
+            values[row, column] = float(html.unescape(self.text[start:end].decode()))
         return values, places
 
 
@@ -161,7 +161,7 @@ class _Model:
     ) -> _Object:
         ns = self._namespace
         own, places = vertices.among(element.iter(f"{ns}vertex"))
-        faces = whole(triangles.among(element.iter(f"{ns}triangle"))[0])
+        faces = as_integers(triangles.among(element.iter(f"{ns}triangle"))[0])
         name = element.get("name") or element.get("partnumber")
         return _Object(
             name=shown(name or f"object {element.attrib['id']}"),
@@ -289,7 +289,7 @@ def _matrices(
     found: dict[_Key, list[Array]] = {key: [np.zeros((0, 4, 4))] for key in objects}
     matrices: dict[_Key, Array] = {}
 
-    def place(placed: list[_Placed], outer: Array) -> None:
+    def add_items(placed: list[_Placed], outer: Array) -> None:
         for key, inner in placed:
             room = _MOST_PLACEMENTS - sum(map(len, found[key]))
             if room > 0 and len(outer):
@@ -297,10 +297,10 @@ def _matrices(
                 with np.errstate(all="ignore"):
                     found[key].append(outer[:room] @ inner)
 
-    place(items, IDENTITY[None])
+    add_items(items, IDENTITY[None])
     for key in reversed([*TopologicalSorter(graph).static_order()]):  # parents before components
         matrices[key] = np.concatenate(found.pop(key))
-        place(objects[key].components, matrices[key])
+        add_items(objects[key].components, matrices[key])
     return {key: matrices[key] for key in objects}
 
 

@@ -93,9 +93,9 @@ class _UsdDocument(Document):
             text = f"{name} has a skeleton: lengths are measured without its pose"
             warnings.append(Warned("skeleton", text))
         primvars = UsdGeom.PrimvarsAPI(prim).GetPrimvarsWithValues()
-        given = {one.GetPrimvarName() for one in primvars}
-        given |= {"normals"} if _given(prim.GetNormalsAttr()) is not None else set()
-        self.contents += [text for key, text in _CONTENTS.items() if key in given]
+        authored = {one.GetPrimvarName() for one in primvars}
+        authored |= {"normals"} if _given(prim.GetNormalsAttr()) is not None else set()
+        self.contents += [text for key, text in _CONTENTS.items() if key in authored]
 
     def side_files(self) -> list[str]:
         return self.names

@@ -148,8 +148,8 @@ class _VtkDocument(Document):
         for normals in _normals(mesh.point_data):
             normals[:] = following_normals(before, after, faces, np.array(normals))
         for normals in _normals(mesh.cell_data):
-            given = np.array(normals, np.float64)
-            normals[:] = following_face_normals(before, after, faces, given, self.owners)
+            old = np.array(normals, np.float64)
+            normals[:] = following_face_normals(before, after, faces, old, self.owners)
         content = self.path.read_bytes()
         changes, text = _changes_of_text(content, self.mesh, mesh, bool(loss))
         if changes:
@@ -184,9 +184,9 @@ def _changes_of_text(
     for association, keyword in (("point_data", b"POINT_DATA"), ("cell_data", b"CELL_DATA")):
         old, new = (getattr(mesh, association) for mesh in (before, after))
         for name in _names_of_normals(old):
-            place = _place_of_array(content, points.end(), keyword, name)
-            if place is not None:
-                changes.append(_change(place, old[name], new[name], SINGLE))
+            offset = _offset_of_array(content, points.end(), keyword, name)
+            if offset is not None:
+                changes.append(_change(offset, old[name], new[name], SINGLE))
     return changes, content
 
 
@@ -223,13 +223,13 @@ def _keep_title(content: bytes, target: Path) -> None:
         target.write_bytes(b"\n".join(lines))
 
 
-def _change(place: int, before: Any, after: Any, digits: int) -> Change:
-    """Return the change of all numbers of an array, which follow each other from a place on."""
+def _change(offset: int, before: Any, after: Any, digits: int) -> Change:
+    """Return the change of all numbers of an array, which follow each other from an offset on."""
     old, new = (np.asarray(one, np.float64).reshape(1, -1) for one in (before, after))
-    return np.array([place]), 0, old, new, digits
+    return np.array([offset]), 0, old, new, digits
 
 
-def _place_of_array(content: bytes, begin: int, section: bytes, name: str) -> int | None:
+def _offset_of_array(content: bytes, begin: int, section: bytes, name: str) -> int | None:
     """Return where the numbers of a vector array begin in legacy text; None if it is not found."""
     encoded = re.escape(name.replace("%", "%25").replace(" ", "%20").encode())
     found = re.compile(

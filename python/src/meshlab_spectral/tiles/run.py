@@ -35,8 +35,8 @@ from meshlab_spectral.tiles.scatter import scatter
 from meshlab_spectral.tiles.survey import Survey, survey
 from meshlab_spectral.tiles.tile_jobs import TileJob, check_seen, run_tile
 from meshlab_spectral.warned import Warned, warned, with_warnings
-from meshlab_spectral.workers.local import open_workers
 from meshlab_spectral.workers.memory import PROCESS_BYTES, TILE_BYTES, limit_for, workers_for_tiles
+from meshlab_spectral.workers.opening import open_workers
 from meshlab_spectral.workers.pool import Workers
 from meshlab_spectral.workers.process import ProgressCallback
 
@@ -75,8 +75,8 @@ def filter_in_tiles(
     """
     _check_files(source, target)
     require_local(options)
-    place = resolved(target)
-    work = Workspace(place.with_name(f".{place.name}.tiles"))
+    path = resolved(target)
+    work = Workspace(path.with_name(f".{path.name}.tiles"))
     rows = open_rows(source)
     with _workers(scheduler) as pool, holding(work.folder), work.removed_if_not_begun():
         pool.on_each(partial(check_seen, str(source.absolute()), str(work.folder)))
@@ -267,8 +267,8 @@ def _filtered(
     def do(tiles: Any, wanted: dict[str, Any], upto: float = 1.0) -> list[dict[str, Any]]:
         reports = {tile: work.report(tile) for tile in tiles}
         left = [tile for tile in tiles if not _is_done(reports[tile], wanted)]
-        place = plan.source, str(work.folder)
-        jobs = [TileJob(*place, tile, plan.tiles, wanted) for tile in left]
+        source_and_folder = plan.source, str(work.folder)
+        jobs = [TileJob(*source_and_folder, tile, plan.tiles, wanted) for tile in left]
         with contextlib.closing(pool.run(jobs)) as results:
             for done, (tile, report) in enumerate(results, 1):
                 reports[tile] = report

@@ -52,7 +52,7 @@ def filter_tile(
         inner[which[own]] = True
         diagonal, edge, of_surface = plan.lengths
         thin = bool(decided.get("has_thin_parts"))
-        whole = TiledSurface(diagonal, edge, of_surface, thin, inner)
+        surface = TiledSurface(diagonal, edge, of_surface, thin, inner)
         selected = _selected(mesh, work, tile, ids, F) if plan.has_selection else None
         chosen = {name: value for name, value in decided.items() if name != "has_thin_parts"}
         parameters = options.core_parameters() | {k: value for k, value in chosen.items() if value}
@@ -66,7 +66,7 @@ def filter_tile(
                 selected=selected,
                 values=mesh.gathered(ids, "quality") if has_weight else None,
                 progress=on_stage,
-                whole=whole,
+                whole=surface,
             )
     moved = after[which[own]]
     if work.plan() != plan:  # the run that has sent this tile to a worker of a cluster is over
@@ -74,8 +74,8 @@ def filter_tile(
     write_whole(work.file(tile, "ids"), np.ascontiguousarray(ids[own], "<u4").data)
     write_whole(work.file(tile, "xyz"), np.ascontiguousarray(moved, "<f8").data)
     if "normals" in mesh.kinds and len(own):
-        given = mesh.gathered(ids, "normals")
-        normals = following_normals(before, after, F.astype(np.int64), given)
+        old = mesh.gathered(ids, "normals")
+        normals = following_normals(before, after, F.astype(np.int64), old)
         write_whole(work.file(tile, "normals"), np.ascontiguousarray(normals[own], "<f8").data)
     asked = {f"wanted_{name}": value for name, value in decided.items()}
     report |= (
@@ -98,8 +98,8 @@ def _numbered(corners: NDArray[np.uint32]) -> tuple[Indices, NDArray[np.integer]
     ids = np.flatnonzero(is_there) + first
     if len(is_there) > 8 * len(ids):  # a shuffled file: the table would be larger than the tile
         return ids, np.searchsorted(ids, corners).astype(np.int32).reshape(-1, 3)
-    place = np.cumsum(is_there, dtype=np.int32) - 1
-    return ids, place[corners - np.uint32(first)].reshape(-1, 3)
+    new_index = np.cumsum(is_there, dtype=np.int32) - 1
+    return ids, new_index[corners - np.uint32(first)].reshape(-1, 3)
 
 
 def _joined(points: Array) -> tuple[Array, Indices]:

@@ -35,12 +35,12 @@ class TileJob:
         return named
 
 
-def check_seen(*places: str) -> None:
+def check_seen(*paths: str) -> None:
     """Raise MeshFileError unless this machine sees files and folders of a run."""
-    for place in places:
-        if not os.access(place, os.R_OK):
+    for path in paths:
+        if not os.access(path, os.R_OK):
             raise MeshFileError(
-                f"the worker on {socket.gethostname()} does not see {place}: keep input and output "
+                f"the worker on {socket.gethostname()} does not see {path}: keep input and output "
                 "in folders that all workers share, under the same paths"
             )
 

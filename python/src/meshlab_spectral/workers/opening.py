@@ -1,4 +1,4 @@
-"""Workers on this machine, or those of a Dask cluster: `open_workers`."""
+"""Opening workers on this machine, or those of a Dask cluster."""
 
 from __future__ import annotations
 

@@ -8,7 +8,7 @@ from pathlib import Path
 import psutil
 import pytest
 from meshlab_spectral.batch.task import run_job
-from meshlab_spectral.workers import local, memory
+from meshlab_spectral.workers import memory, opening
 
 
 @pytest.fixture(autouse=True)
@@ -64,11 +64,11 @@ def test_older_containers_count(group: Path) -> None:
 
 def test_workers_share_nine_tenths_of_the_memory(group: Path) -> None:
     (group / "memory.max").write_text(f"{10 * 2**30}\n")
-    with local.open_workers(run_job, count=3) as workers:
+    with opening.open_workers(run_job, count=3) as workers:
         processes = workers.do.args[0]  # type: ignore[attr-defined]
     assert processes.limits.memory == 3 * 2**30
     assert not processes.limits.replaces_environment
-    with local.open_workers(run_job, count=3, memory_limit=2**30) as workers:
+    with opening.open_workers(run_job, count=3, memory_limit=2**30) as workers:
         processes = workers.do.args[0]  # type: ignore[attr-defined]
     assert processes.limits.memory == 2**30
     assert processes.limits.replaces_environment
@@ -78,5 +78,6 @@ def test_without_a_place_for_temporary_files_the_remedy_is_named(
     monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
     monkeypatch.setattr("tempfile.tempdir", str(tmp_path / "none"))
-    with pytest.raises(local.BatchError, match="set TMPDIR"), local.open_workers(run_job, count=1):
+    failing = opening.open_workers(run_job, count=1)
+    with pytest.raises(opening.BatchError, match="set TMPDIR"), failing:
         pass
