@@ -209,6 +209,9 @@ FilterOutput outputOf(const MeshModel& mesh, const MeshFilter& filter, const Mes
                                valuesOf(mesh, input, filter.values)};
     using Names = spectral::Words::Names;
     read.words = {hasWindows() ? Names::Labels : Names::Python, true};
+    constexpr const char* kLimit = "MESHLAB_SPECTRAL_MEMORY";
+    if (qEnvironmentVariableIsSet(kLimit))
+        read.words.moreMemory = std::string("raise the environment variable ") + kLimit;
     if (kept != nullptr && options.isPreview) {
         if (std::exchange(kept->previewed, &contract) != &contract) kept->bands.reset();
         FilterOutput output = spectral::preview(contract, read, given, kept->bands, progress);

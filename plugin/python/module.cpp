@@ -52,7 +52,7 @@ nb::dict applyFilter(const std::string& name, const Positions& vertices, const I
                      const nb::dict& options, const std::optional<Flags>& selected,
                      const std::optional<Table>& values, const std::optional<Pairs>& gain,
                      const std::optional<TiledTuple>& whole, nb::handle progress, int threads,
-                     bool isShell) {
+                     const std::string& moreMemory, bool isShell) {
     FilterInput input{mapOf(vertices, 3), mapOf(faces, 3)};
     if (selected) {
         requireRows(*selected, vertices);
@@ -69,6 +69,7 @@ nb::dict applyFilter(const std::string& name, const Positions& vertices, const I
         const std::vector<bool> flags(inner.data(), inner.data() + inner.shape(0));
         input.whole = {{diagonal, meanEdge, surfaceDiagonal}, hasThinParts, flags};
     }
+    if (!moreMemory.empty()) input.words.moreMemory = moreMemory;
     if (isShell) input.words.names = Words::Names::Options;
     const Values given = valuesOf(options);
     FilterOutput output = [&] {
@@ -224,7 +225,8 @@ NB_MODULE(_core, m) {
     m.def("warning_kinds", python::describedWarnings);
     m.def("apply", python::applyFilter, "name"_a, "vertices"_a, "faces"_a, "options"_a,
           nb::kw_only(), "selected"_a = nb::none(), "values"_a = nb::none(), "gain"_a = nb::none(),
-          "whole"_a = nb::none(), "progress"_a = nb::none(), "threads"_a = 0, "is_shell"_a = false);
+          "whole"_a = nb::none(), "progress"_a = nb::none(), "threads"_a = 0, "more_memory"_a = "",
+          "is_shell"_a = false);
     m.def("gains", python::gains, "options"_a, "feature_size"_a, "diagonal"_a, "mean_edge"_a,
           "frequencies"_a);
     m.def("laplacian", python::laplacian, "vertices"_a, "faces"_a, "kind"_a, nb::kw_only(),

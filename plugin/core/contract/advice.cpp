@@ -112,16 +112,13 @@ std::string remedy(const Error& error, const Given& given) {
                    "Reconstruction: Ball Pivoting}";
         case ErrorCode::NotFinite:
             return "delete them{, e.g. with 'Conditional Vertex Selection' (x != x) and 'Delete "
-                   "Selected "
-                   "Vertices'|}";
+                   "Selected Vertices'|}";
         case ErrorCode::ValueNotFinite:
             return "{apply 'Per Vertex Quality Function' with abs(q) < 1e30 ? q : 0/0 first, which "
-                   "turns "
-                   "them into NaN|give NaN instead}, i.e. no data";
+                   "turns them into NaN|give NaN instead}, i.e. no data";
         case ErrorCode::NoData:
             return "{apply a filter that computes qualities first, e.g. 'Per Vertex Quality "
-                   "Function'|"
-                   "give a number at some vertices}";
+                   "Function'|give a number at some vertices}";
         case ErrorCode::DegenerateTriangles: return largerTriangles(given);
         case ErrorCode::SolverFailed:
         case ErrorCode::SingularMatrix: return kRemesh;

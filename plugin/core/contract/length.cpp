@@ -9,6 +9,12 @@
 
 namespace spectral {
 
+namespace {
+
+using Single = std::numeric_limits<float>;
+
+}  // namespace
+
 Length Length::parse(const std::string& text) {
     const std::size_t first = text.find_first_not_of(' ');
     std::string number = first == std::string::npos ? "" : text.substr(first);
@@ -20,11 +26,12 @@ Length Length::parse(const std::string& text) {
     if (length.unit != Unit::Absolute) number.pop_back();
     std::istringstream input(number);
     input.imbue(std::locale::classic());
-    using Single = std::numeric_limits<float>;
     const bool isNumber = input >> length.value && (input >> std::ws).eof();
-    if (!isNumber || length.value < Single::min() || length.value > Single::max())
+    if (!isNumber || length.value < Single::min() || length.value > Single::max()) {
+        const std::string limit = isNumber ? limitOfSinglePrecision(length.value) : "";
         throw InvalidOption((isNumber ? text : "'" + text + "'") + ": give " + kLengthForms +
-                            ", above zero");
+                            (limit.empty() ? ", above zero" : limit));
+    }
     if (length.unit == Unit::Percent && length.value > 100.0)
         throw InvalidOption(text + ": a percentage goes up to 100% of the diagonal");
     return length;
@@ -42,6 +49,11 @@ double Length::in(const MeshLengths& mesh, double automatic) const {
         case Unit::Absolute: break;
     }
     return inSinglePrecision(value);
+}
+
+std::string limitOfSinglePrecision(double number) {
+    if (number > Single::max()) return ", at most " + textOf(Single::max());
+    return number > 0.0 && number < Single::min() ? ", at least " + textOf(Single::min()) : "";
 }
 
 double inSinglePrecision(double number) {

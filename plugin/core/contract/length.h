@@ -28,6 +28,10 @@ struct Length {
     double in(const MeshLengths& mesh, double automatic) const;
 };
 
+/// What a number is to be, ", at most 3.4e+38" or the least, where it is infinite or zero in single
+/// precision; else nothing.
+std::string limitOfSinglePrecision(double number);
+
 /// The number in single precision, unless that would be zero or infinite.
 double inSinglePrecision(double number);
 

@@ -64,7 +64,7 @@ double numberOf(const Parameter& parameter, const Value& value) {
     std::string wanted = parameter.kind == Kind::Integer ? "must be an integer, " : "must be ";
     wanted += rangeOf(parameter);
     if (parameter.kind == Kind::Length) wanted += std::string(": give ") + kLengthForms;
-    if (number > Single::max()) wanted += ", at most " + textOf(Single::max());
+    if (!isBounded || number < parameter.high) wanted += limitOfSinglePrecision(number);
     reject(parameter, value, wanted);
 }
 

@@ -64,9 +64,8 @@ Warnings surfaceWarnings(const SurfaceCounts& counts) {
             {WarningCode::NearlyJoined,
              std::to_string(counts.nearlyJoined) +
                  " vertices on the boundary are within round-off of others, but not at the same "
-                 "point: "
-                 "the surface may tear there. {Apply 'Merge Close Vertices'|Merge close vertices} "
-                 "first"});
+                 "point: the surface may tear there. {Apply 'Merge Close Vertices'|Merge close "
+                 "vertices} first"});
     if (counts.flatComponents > 0)
         warnings.push_back(
             {WarningCode::FlatComponents,

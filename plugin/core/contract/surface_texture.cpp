@@ -221,10 +221,8 @@ FilterOutput run(const FilterInput& input, const MeshLengths& mesh, const Values
              "only " + std::to_string(texture.evaluated) + " of " +
                  countText(texture.leftOut + texture.evaluated + texture.tooThin) +
                  " are measured: the others are within a cutoff of boundaries or creases, or not "
-                 "on "
-                 "the fitted shape. A smaller |waviness|, or a larger |crease_angle| such as 180, "
-                 "measures "
-                 "more"});
+                 "on the fitted shape. A smaller |waviness|, or a larger |crease_angle| such as "
+                 "180, measures more"});
     constexpr double kSteep = 0.7;  // Sq is .5 % off at .4, and 3.5 % at 1
     if (!isShape(options.form) && texture.Sdq > kSteep)
         output.warnings.push_back(

@@ -62,9 +62,9 @@ void addTransferFields(Fields<Call>& fields) {
     fields.push_back(featureSizeField<Call>(
         [](auto& call) -> auto& { return call.featureSize; },
         "Size at which the filter cuts off: a wavelength along the surface, that is, a bump and "
-        "the "
-        "hollow next to it. A low-pass leaves a quarter of the height of waves half as long, and "
-        "nine tenths of that of waves twice as long. To remove bumps, try four times their width. "
+        "the hollow next to it. A low-pass leaves a quarter of the height of waves half as long, "
+        "and nine tenths of that of waves twice as long. To remove bumps, try four times their "
+        "width. "
         "At the default size a low-pass removes the noise of a scan, and thinner parts, such as "
         "fingers and wires, keep their thickness; at any other size they shrink."));
     fields.push_back(field<Call>([](auto& call) -> auto& { return call.transfer.power; }, "power",

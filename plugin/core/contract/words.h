@@ -15,7 +15,8 @@ struct Words {
     };
     Names names = Names::Python;
     bool hasMeshLab = false;  ///< Whether MeshLab's own filters are at hand.
-    std::string moreMemory = "raise the memory limit";  ///< What to do where a mesh is too large.
+    /// What to do where a mesh is too large.
+    std::string moreMemory = "give it a machine with more free memory";
 };
 
 /// Advice in the words of a host.

@@ -139,7 +139,7 @@ Followed flattened(const FaceGraph& graph, const Points& X0, Followed rounds,
     NormalFilterOptions filter;
     filter.time = 6.0;
     filter.edgeScale = 0.22;
-    filter.flatness = 30.0;  // with 60, block_n1 and plane-sphere_n1 of ../shared/denoise lose
+    filter.flatness = 30.0;  // with 60, machine parts with weak noise lose
     filter.useTwicing = true;
     for (int k = 0; k < kIterations; ++k) {
         const Points guide = rounds.N;
@@ -156,12 +156,12 @@ Followed flattened(const FaceGraph& graph, const Points& X0, Followed rounds,
 /// parts.
 Followed roundsAndFlatParts(const FaceGraph& graph, const Points& X0, const RemovalOptions& options,
                             const Progress& progress) {
-    // Standard deviations. Where the stage helps, the gain is 2 (TGV_Block) and more, but for
-    // Block0.4 with .2; where it harms, -.8 (trimstar_n3) and less.
+    // Standard deviations. Where the stage helps, the gain is 2 and more, but for a block with
+    // noise of .4 edges with .2; where it harms, -.8 and less.
     constexpr double kMinGain = 1.0;
     Followed rounds = whiteRounds(graph, X0, options, kMaxRounds, progress.part(0.0, 0.5));
     // A shape whose details the weak rounds would take next has no flat parts. By place, the risk
-    // is too uncertain: patch50-boxy of ../shared/denoise_local would lose .1 degrees.
+    // is too uncertain: a boxy part with noise on half of it would lose .1 degrees.
     if (rounds.removal.rounds <= kWeakRounds || !options.keepCreases || !options.noise.isAlike())
         return rounds;
     const SplitNoise split(X0, smoothVertexNormals(graph, rounds.removal.X, 1),

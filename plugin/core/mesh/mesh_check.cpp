@@ -49,8 +49,7 @@ void checkMesh(const Vertices& V, const Faces& F) {
         throw InvalidMesh(ErrorCode::NotFinite,
                           counted(notFinite, "vertex has", "vertices have") +
                               " coordinates that are not finite (NaN, infinity or beyond 1e75), "
-                              "the first is "
-                              "vertex " +
+                              "the first is vertex " +
                               std::to_string(first));
 
     for (Index t = 0; t < F.rows(); ++t)

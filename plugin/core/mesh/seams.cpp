@@ -17,9 +17,9 @@ namespace spectral {
 
 namespace {
 
-// Corners off by 1e-5 of the size, as in a text of five digits: the bunny's 69,451 triangles, with
-// sides of 6e-3 to 7e-4 of the size, become one surface; at .005 they fall into 761 parts. At .1,
-// corners across the short sides of rocker-arm are near each other, too.
+// Corners off by 1e-5 of the size, as in a text of five digits: 69,451 triangles with sides of 6e-3
+// to 7e-4 of the size become one surface; at .005 they fall into 761 parts. At .1, corners across
+// the short sides of a decimated part are near each other, too.
 constexpr double kTiny = 0.02;
 
 // A direction in which no mesh is flat: sweeps along it.

@@ -56,15 +56,15 @@ constexpr double kWholeMesh = 0.7;
 /// from a coarse shape with a little noise.
 double noiseShare(double correlation) {
     constexpr double kSlope = 14.0;
-    // Of noise of .1 edges on a coarse cow, .3 leaves 80 % of the angle; 1 takes some of the cow.
+    // Of noise of .1 edges on a coarse statue, .3 leaves 80 % of the angle; 1 takes some of it.
     constexpr double kLeast = 0.4;
     return std::clamp(1.0 - kSlope * (correlation - kMaxPureNoise), kLeast, 1.0);
 }
 
-// Chosen on blocks1, blocks3, grid05 to grid11 of ../shared/denoise_local. In mean edges:
+// Surfaces of volumes have steps of an edge or so, coordinates rounded to a grid .05 to .11. Edges:
 constexpr double kMinVoxel = 0.3, kMinRounding = 0.04;
 
-/// Whether the vertices on a grid are those of the surface of a binary volume.
+/// Notes voxels if the vertices on a grid are those of the surface of a binary volume.
 void findVoxels(const FaceGraph& graph, const CoordinateGrid& grid,
                 const std::vector<bool>& isMeasured, Diagnosis& diagnosis) {
     // Of weighted residuals, mean edges: designed shapes are flat.
@@ -83,7 +83,7 @@ void findVoxels(const FaceGraph& graph, const CoordinateGrid& grid,
     diagnosis.voxel = grid.step;
 }
 
-/// Whether the vertices are those of the surface of a binary volume that is turned, or most are.
+/// The same for a volume that is turned, and where only most of the vertices are of it.
 void findTurnedVoxels(const FaceGraph& graph, const std::vector<bool>& isMeasured,
                       Diagnosis& diagnosis) {
     std::vector<Eigen::Matrix3d> candidates = latticeAxes(graph, diagnosis.X);
@@ -103,7 +103,7 @@ void findTurnedVoxels(const FaceGraph& graph, const std::vector<bool>& isMeasure
     }
 }
 
-/// Whether the coordinates were rounded to the grid.
+/// Notes rounding if the coordinates were rounded to the grid.
 void findRounding(const CoordinateGrid& grid, Diagnosis& diagnosis) {
     const double edge = diagnosis.noise.meanEdge;
     if (!(grid.step.minCoeff() > kMinRounding * edge && grid.step.maxCoeff() < kMinVoxel * edge))
@@ -256,8 +256,7 @@ Diagnosis diagnoseWhole(const FaceGraph& graph, const Points& X,
     if (isRising || noise.isShape) return diagnosis;
     if (noise.size > 1.0) {
         // Mean edges that are certainly noise: .04 to .05 on a sheet with many holes and white
-        // noise of .05 (many_small_holes); .076 on a scan by structured light (sl-cadm of
-        // ../shared/views).
+        // noise of .05; .076 on a scan by structured light.
         constexpr double kMinCorrelated = 0.06;
         if ((isCoarser ? 1.0 : noiseShare(correlation)) * noise.height >= kMinCorrelated * edge)
             diagnosis.kind = NoiseKind::Correlated;

@@ -180,8 +180,7 @@ double kurtosis(const Eigen::VectorXd& squares, const Eigen::VectorXd& place,
 bool areCrestsAlike(const VertexGraph& graph, const OctaveDeviations& octaves, int octave,
                     double height, double white, const std::vector<bool>& isMeasured) {
     // Excess kurtosis less the white noise in it: at most -.6 with knurls, the least of reliefs,
-    // and
-    // -.38 and more with noise over two edges (corr2_bunny of ../shared/denoise).
+    // and -.38 and more with noise over two edges.
     constexpr double kMaxExcess = -0.5;
     constexpr int kPlace = 64, kShapeOctave = 5;
     const double relief = 1.0 - std::pow(white / height, 2);
@@ -196,7 +195,7 @@ bool areCrestsAlike(const VertexGraph& graph, const OctaveDeviations& octaves, i
 
 /// The octave of relief on a flat part: they rise to it and fall again, which noise on a shape does
 /// not. At the end they have .8 of it on sheets with ribs, waves or threads at the most, and 1 or
-/// more on machine parts (../shared/denoise).
+/// more on machine parts.
 std::optional<int> octaveOfCrests(const Octaves& height) {
     constexpr double kMinRise = 1.25, kMaxEnd = 0.8;
     int crest = 0;
@@ -208,8 +207,7 @@ std::optional<int> octaveOfCrests(const Octaves& height) {
 
 /// Whether the octaves rise alike, as on natural ground: there is neither a size that noise ends at
 /// nor a shape under it. The rise is at most 2.25 on fractal ground, 1.43 at least; a shape under
-/// scanner noise reaches 2.3 and more (depth_igea of ../shared/denoise), noise on a flat part ends
-/// with 1.3 and less.
+/// scanner noise reaches 2.3 and more, noise on a flat part ends with 1.3 and less.
 bool isSelfSimilar(const Octaves& height) {
     constexpr double kLeast = 1.4, kMost = 2.27;
     for (int k = 2; k + 1 < kOctaves; ++k)
@@ -271,10 +269,10 @@ double residualCorrelation(const FaceGraph& graph, const Points& X, const Points
 }
 
 bool SecondResiduals::isNoise(double firstCorrelation, double meanEdge) const {
-    // Stone of igea, decimated, is white noise of .045 edges; on steep ground there are .072.
+    // Rough stone, decimated, is white noise of .045 edges; on steep ground there are .072.
     constexpr double kWeakHeight = 0.06;
     // At least -.22 on fractal ground and on all decimated shapes but that; -.26 and less with
-    // white noise on any shape (../shared/denoise).
+    // white noise on any shape.
     constexpr double kMaxCorrelation = -0.24;
     return correlation < kMaxCorrelation &&
            (firstCorrelation < 0.0 || height > kWeakHeight * meanEdge);
@@ -360,7 +358,7 @@ NoiseEstimate estimateNoise(const FaceGraph& graph, const Points& X, const Point
     const std::optional<int> crests =
         isLong ? std::optional<int>(kLongerThanWhite) : octaveOfCrests(height);
     // It is the same in all octaves, so that what falls is relief of a few edges: to .66 and less
-    // with reliefs of four edges, to .76 with impulses (nicolo_i6), .9 and more with other noise.
+    // with reliefs of four edges, to .76 with impulses, .9 and more with other noise.
     // Without noise it falls to .39 and less, with noise of .2 edges to .51 and more.
     constexpr double kMinOfNoise = 0.7, kMaxOfRelief = 0.5;
     const double lowest = crests ? height.minCoeff() : height.head<kWhiteOctaves>().minCoeff();

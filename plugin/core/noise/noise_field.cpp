@@ -20,8 +20,8 @@ struct Limits {
     double correlation;  ///< Largest correlation of neighbouring residuals over kWide steps.
     double height;       ///< Least height over kWide steps, edges.
 };
-// Clean meshes of ../shared/data and decimated ones have +.07 and more; igea, whose stone is as
-// rough as weak noise once it is decimated to 4,000 to 15,000 vertices, has -.17 up to .1 edges.
+// Clean meshes and decimated ones have +.07 and more; a statue whose stone is as rough as weak
+// noise once it is decimated to 4,000 to 15,000 vertices has -.17 up to .1 edges.
 constexpr Limits kCertain{-0.1, 0.12}, kCertainWeak{-0.18, 0.06}, kPossible{0.15, 0.03};
 
 using Flags = std::vector<bool>;
@@ -188,8 +188,8 @@ LocalResiduals localResiduals(const FaceGraph& graph, const Points& X, const Fla
 
 bool areAlike(const FaceGraph& graph, const Points& X, const LocalResiduals& residuals,
               const Flags& isMeasured) {
-    // At most 1.9 on the pairs of ../shared/denoise with white noise, the same everywhere; 2.2
-    // and more on those of ../shared/denoise_local (real15-igea).
+    // At most 1.9 with white noise, the same everywhere; 2.2 and more where its height differs by
+    // place.
     constexpr double kMaxUnevenness = 2.1, kLow = 0.1, kHigh = 0.98;
     const auto isEven = [&](const Eigen::VectorXd& height) {
         std::vector<double> heights;

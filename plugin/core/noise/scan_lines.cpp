@@ -45,7 +45,7 @@ WeightedResiduals weightedResiduals(const FaceGraph& graph, const Points& X,
 
 std::optional<ScanLineNoise> scanLineNoise(const FaceGraph& graph, const Points& X,
                                            const std::vector<bool>& isMeasured) {
-    // lines3, lines5, lines8 of ../shared/denoise_local against ../shared/cad and ../shared/data.
+    // Surfaces scanned in lines have less; clean statues and machine parts have more.
     constexpr double kMaxCorrelationOfLines = -0.2;
     const WeightedResiduals residuals = weightedResiduals(graph, X, isMeasured);
     const ScanLineNoise noise{residuals.deviation, shortEdge(graph.vertices, X)};

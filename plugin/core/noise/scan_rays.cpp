@@ -57,7 +57,7 @@ Points raysFrom(const Eigen::RowVector3d& eye, const FaceGraph& graph, const Poi
 /// direction of a scan.
 Points directionOfResiduals(const FaceGraph& graph, const Points& X,
                             const std::vector<bool>& isMeasured) {
-    // Single scans have 3.2 to 12, all else 1.0 to 1.9 (../shared/views, ../shared/denoise).
+    // Single scans have 3.2 to 12, all else 1.0 to 1.9.
     constexpr double kMinRatio = 3.0;
     constexpr double kMinSeen = 0.9;  // of the area, less what is seen from behind
     constexpr double kTrimmed = 0.95;

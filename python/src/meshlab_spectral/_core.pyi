@@ -33,6 +33,7 @@ def apply(
     whole: tuple[float, float, float, bool, NDArray[np.bool_]] | None = None,
     progress: Progress | None = None,
     threads: int = 0,
+    more_memory: str = "",
     is_shell: bool = False,
 ) -> dict[str, Any]: ...
 def gains(

@@ -40,7 +40,7 @@ from meshlab_spectral.filters.running import plain
 from meshlab_spectral.filters.spectrum import measure
 from meshlab_spectral.filters.tables import TABLES
 from meshlab_spectral.formats.budget import guard_process
-from meshlab_spectral.plugin.limits import set_memory_limit
+from meshlab_spectral.plugin.limits import name_memory_limit, set_memory_limit
 from meshlab_spectral.tiles.tile import filter_tile
 
 
@@ -144,6 +144,7 @@ def _main() -> None:
         try:
             job = json.loads(jobs.get())
             set_memory_limit(job.get("memory"))
+            name_memory_limit("the memory limit")  # the parent says which
             _core.set_memory_limit(job.get("memory") or 0)
             answer(report=_report_of(job, on_stage))
         except Exception as error:

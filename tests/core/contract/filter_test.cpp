@@ -119,6 +119,17 @@ TEST(Filters, RefuseUnknownAndWrongValuesByName) {
     EXPECT_EQ(reason({{"steps", 1.5}}), "steps = 1.5: must be an integer, 0 to 1000");
     EXPECT_EQ(reason({{"power", 1.5}}), "power = 1.5: must be above 0, at most 1");
     EXPECT_EQ(reason({{"pass_gain", -1}}), "pass_gain = -1: must be at least 0");
+    EXPECT_EQ(reason({{"power", 1e39}}), "power = 1e+39: must be above 0, at most 1");
+    EXPECT_EQ(reason({{"power", 1e-50}}),
+              "power = 1e-50: must be above 0, at most 1, at least 1.17549e-38");
+    const std::string forms = std::string(": give ") + kLengthForms;
+    const std::string most = forms + ", at most 3.40282e+38";
+    EXPECT_EQ(reason({{"feature_size", 1e39}}), "feature_size = 1e+39: must be above 0" + most);
+    EXPECT_EQ(reason({{"feature_size", std::string("1e39")}}), "feature_size = 1e39" + most);
+    EXPECT_EQ(reason({{"feature_size", std::string("1e-50%")}}),
+              "feature_size = 1e-50%" + forms + ", at least 1.17549e-38");
+    EXPECT_EQ(reason({{"feature_size", std::string("0")}}),
+              "feature_size = 0" + forms + ", above zero");
     EXPECT_EQ(reason({{"boundary", std::string("open")}}), "boundary = open: choose free, fixed");
     EXPECT_EQ(reason({{"boundary", 2}}), "boundary = 2: choose 0 (free), 1 (fixed)");
     EXPECT_NE(reason({{"feature_size", std::string("5 m")}}).find("feature_size = '5 m'"),

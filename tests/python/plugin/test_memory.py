@@ -94,8 +94,9 @@ def test_every_function_keeps_to_the_limit(
 ) -> None:
     V, F = decimated("cow.obj", 2000)
     set_memory_limit(1)
-    with pytest.raises(FilterError, match=r"memory, (of which )?0 MiB are free"):
+    with pytest.raises(FilterError, match=r"memory, (of which )?0 MiB are free") as refused:
         call(V, F)
+    assert re.search("raise set_memory_limit$|choose at most", str(refused.value))
     for value in ("", "4XB", "GB", "0", "0GB", "-1", "nan", "inf"):
         monkeypatch.setenv(MEMORY, value)
         with pytest.raises(FilterError, match=f"{MEMORY} = {value}: give a number of bytes"):

@@ -135,6 +135,7 @@ def run(
             whole=whole,
             progress=on_progress,
             threads=thread_count(threads),
+            more_memory=limits.memory_remedy(),
             is_shell=SHELL in os.environ,
         )
     report = _reported(result.pop("report"), result.pop("warnings"))
