@@ -3,6 +3,7 @@
 # virtual screen. That system is made at the first run, and kept; later runs need no network.
 #
 # usage: run.sh [ARGUMENTS OF PYTEST]
+#        run.sh --make-root    that system alone
 #
 # MESHLAB_SPECTRAL_GUI_ROOT names the system's folder (1 GB), by default in /var/cache.
 # Needs Linux and root, or sudo: for debootstrap, chroot and mount.
@@ -33,6 +34,7 @@ finish() {
 trap finish EXIT
 mkdir -p build/gui
 run_child TERM tests/gui/make_root.sh "$root"
+[ "${1:-}" != --make-root ] || exit 0
 
 # The paths of sockets must be short, so the system is mounted at a short one. No network, and the
 # system's folder cannot be written to. What the tests write is in memory.
