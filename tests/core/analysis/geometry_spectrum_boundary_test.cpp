@@ -23,7 +23,8 @@ using testing::spectrumOf;
 /// Open surfaces, the last one joined with a closed one.
 std::vector<Mesh> openMeshes() {
     return {testing::hemisphere(14), testing::withNoise(testing::rectangle(2, 1, 32, 16), 0.01, 3),
-            testing::joined(testing::blob(), testing::withNoise(testing::hemisphere(8), 0.01, 2))};
+            testing::joined(testing::withNoise(testing::icosphere(2), 0.05, 5),
+                            testing::withNoise(testing::hemisphere(8), 0.01, 2))};
 }
 
 TEST(GeometrySpectrumWithFixedBoundary, AgreesWithAllEigenvectorsOfTheInterior) {

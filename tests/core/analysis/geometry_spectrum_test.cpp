@@ -24,7 +24,8 @@ using testing::withBasis;
 
 std::vector<Mesh> classesOfMeshes() {
     return {testing::blob(), testing::withNoise(testing::rectangle(2, 1, 32, 16), 0.01, 3),
-            testing::joined(testing::blob(), testing::torus(2, 0.7, 24, 12)),
+            testing::joined(testing::withNoise(testing::icosphere(2), 0.05, 5),
+                            testing::torus(2, 0.7, 16, 8)),
             testing::withNoise(testing::icosphere(3), 0.005, 4)};
 }
 

@@ -47,7 +47,9 @@ Mesh triangle() {
 std::vector<Mesh> openMeshes() {
     return {openBlob(), testing::withNoise(testing::rectangle(2, 1, 20, 10), 0.03, 3),
             testing::joined(openBlob(), testing::torus(3, 0.8, 20, 10)),
-            testing::joined(triangle(), testing::joined(testing::blob(), openBlob()))};
+            testing::joined(
+                triangle(),
+                testing::joined(testing::withNoise(testing::icosphere(2), 0.05, 5), openBlob()))};
 }
 
 const BasisUpdate kUpdates[] = {BasisUpdate::Full, BasisUpdate::Conformal, BasisUpdate::None};
