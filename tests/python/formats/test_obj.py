@@ -277,3 +277,21 @@ def test_a_normal_that_serves_faces_which_turn_apart_becomes_several(tmp_path: P
     assert others == [[b"g", b"strip"], [b"l", b"1", b"2"]]
     assert b"# up" in target.read_bytes()
     assert read(target).contents == document.contents
+
+
+def test_a_normal_of_two_faces_becomes_two(tmp_path: Path) -> None:
+    content = (
+        b"v 0 0 0\nv 1 0 0\nv 0 1 0\nv 2 0 0\nv 3 0 0\nv 2 1 0\nvn 0 0 1\n"
+        b"f 1//1 2//1 3//1\nf 4//1 5//1 6//1\n"
+    )
+    document = read(write(tmp_path / "in.obj", content))
+    moved = document.parts[0].vertices.copy()
+    moved[4, 2] = 1
+    (warning,) = document.save(tmp_path / "out.obj", [moved])
+    assert warning == "1 normal is added, as others serve faces that turn apart"
+    lines = [line.split() for line in (tmp_path / "out.obj").read_text().splitlines()]
+    N = np.array([words[1:] for words in lines if words[0] == "vn"], float)
+    corners = [[w.split("//")[1] for w in words[1:]] for words in lines if words[0] == "f"]
+    assert [len(set(one)) for one in corners] == [1, 1]
+    of_faces = N[[int(one[0]) - 1 for one in corners]]
+    np.testing.assert_allclose(of_faces, [[0, 0, 1], [-(0.5**0.5), 0, 0.5**0.5]], atol=1e-6)

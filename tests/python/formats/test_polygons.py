@@ -10,6 +10,7 @@ import pytest
 import pyvista
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from meshlab_spectral.errors import MeshFileError
 from meshlab_spectral.formats.document import Array, Indices
 from meshlab_spectral.formats.opening import open_document
 from meshlab_spectral.formats.polygons import triangles
@@ -56,6 +57,13 @@ def test_an_l_shaped_cap_keeps_its_area(format_: str, first: int, tmp_path: Path
     vectors = areas(part.vertices, part.faces)
     assert np.linalg.norm(vectors, axis=1).sum() == pytest.approx(7)
     np.testing.assert_allclose(vectors.sum(axis=0), [0, 0, 7], atol=1e-12)
+
+
+@pytest.mark.parametrize("format_", ["ply", "obj", "off"])
+def test_a_polygon_of_a_vertex_too_many_is_refused(format_: str, tmp_path: Path) -> None:
+    path = write(tmp_path / f"cap.{format_}", np.array(L_SHAPE, float), [[0, 1, 2, 3, 5, 6]])
+    with pytest.raises(MeshFileError, match=r"cap\."):
+        open_document(path)
 
 
 @settings(max_examples=200, deadline=None)

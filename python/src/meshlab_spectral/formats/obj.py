@@ -74,7 +74,8 @@ class _Obj(Document):
                 normals = following_normals(before, after, faces, old, which)
             if len(old) > len(self.normals):
                 more = len(old) - len(self.normals)
-                text = f"{more} normals are added, as others serve faces that turn apart"
+                added = "1 normal is" if more == 1 else f"{more} normals are"
+                text = f"{added} added, as others serve faces that turn apart"
                 warnings.append(Warned("added_normals", text))
         changes = [(starts, 1, before, after, digits_for(before, after))]
         if len(old):
