@@ -233,8 +233,7 @@ class Reference:
         return X, last, number
 
     def flattened(self, X0: Array, N: Array, height: float) -> tuple[Array, Array]:
-        for _ in range(2):
-            N = self.filtered_normals(X0, 6, 0.22, 0, 0, True, N)
+        N = self.filtered_normals(X0, 6, 0.22, 0, 0, True, N)
         return limited(X0, self.followed(X0, N, 60), 6 * height), N
 
     def without_white_noise(self, X0: Array, height: float) -> Array:
