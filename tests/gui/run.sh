@@ -36,6 +36,7 @@ mkdir -p build/gui
 run_child TERM tests/gui/make_root.sh "$root"
 [ "${1:-}" != --make-root ] || exit 0
 
+# A process more than processors: on two of them two wait a third of the time, for windows.
 # The paths of sockets must be short, so the system is mounted at a short one. No network, and the
 # system's folder cannot be written to. What the tests write is in memory.
 mount_point=$(mktemp -d /tmp/gui.XXXXXX)
@@ -48,4 +49,4 @@ in_namespaces --net --ipc bash -euo pipefail -c '
     mount -t tmpfs -o mode=1777 tmpfs "$at/dev/shm"
     mount -t tmpfs -o mode=1777 tmpfs "$at/tmp"
     .venv/bin/python -m pytest -c python/pyproject.toml --rootdir . -p no:cacheprovider \
-        --numprocesses "$(nproc)" --dist worksteal "${@:-tests/gui}"' "$root" "$@"
+        --numprocesses $(($(nproc) + 1)) --dist worksteal "${@:-tests/gui}"' "$root" "$@"
