@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import functools
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -16,6 +16,7 @@ from bench_denoise import METHODS, Pair
 from figure_numbers import Drawing, MeshFile, Numbers
 from meshlab_spectral import denoise_mesh
 from meshlab_spectral.figures.pictures import Image, Panel, View
+from numpy.typing import NDArray
 from side_by_side import save, side_by_side
 
 # From the folder of the meshes.
@@ -51,22 +52,25 @@ def trimstar(mesh: MeshFile) -> Drawing:
 
 
 def local(mesh: MeshFile) -> Drawing:
-    """Show a part, a building and a scan with noise in some places only."""
+    """Show a part, a building and a scan with noise in some places only, and where it was found."""
     names = ("half-boxy", "facade00-20", "real30-bunny")
-    return _drawing(mesh, {name: Detail() for name in names}, LOCAL_PAIRS)
+    return _drawing(mesh, {name: Detail() for name in names}, LOCAL_PAIRS, with_heights=True)
 
 
-def _drawing(mesh: MeshFile, details: dict[str, Detail], folder: str = PAIRS) -> Drawing:
-    """Make a picture with a row for each pair."""
+def _drawing(
+    mesh: MeshFile, details: dict[str, Detail], folder: str = PAIRS, *, with_heights: bool = False
+) -> Drawing:
+    """Make a picture with a row for each pair, and the height of the noise at each vertex."""
     rows: list[tuple[list[Panel], Detail]] = []
     numbers: Numbers = {}
     for name, detail in details.items():
         pair = Pair(mesh(f"{folder}/{name}_noisy.ply").parent, name)
         taubin, counts = METHODS["Taubin"]
         smoothed = [taubin(pair.V, pair.F, count) for count in counts]
+        denoised, report = denoise_mesh(pair.V, pair.F, store_noise_height=True)
         shapes = {
             "before": pair.V,
-            "Spectral Denoise": denoise_mesh(pair.V, pair.F)[0],
+            "Spectral Denoise": denoised,
             "Taubin, best": min(smoothed, key=pair.angle),
         }
         panels = []
@@ -74,8 +78,18 @@ def _drawing(mesh: MeshFile, details: dict[str, Detail], folder: str = PAIRS) ->
             angle = pair.angle(V)
             numbers[f"{name}, {label}: mean angle to the truth, degrees"] = angle
             panels.append(Panel(f"{label}, {angle:.1f}\N{DEGREE SIGN}", V, pair.F))
+        if with_heights:
+            heights = np.asarray(report["noise_heights"]) / report["mean_edge"]
+            numbers[f"{name}: largest height of the noise, edges"] = heights.max()
+            panels.insert(1, _map_of_heights(heights, pair))
         rows.append(([*panels, pair.truth()], detail))
     return Drawing(numbers, functools.partial(_draw, rows))
+
+
+def _map_of_heights(heights: NDArray[np.float64], pair: Pair) -> Panel:
+    """Colour the noisy mesh from grey, no noise, to red, the largest height."""
+    label = f"noise: 0 to {heights.max():.2f} edges"
+    return Panel(label, pair.V, pair.F, signed=heights / heights.max(), zero_line=False)
 
 
 def _draw(rows: list[tuple[list[Panel], Detail]], path: Path) -> None:
@@ -92,7 +106,8 @@ def _row(panels: list[Panel], detail: Detail) -> Image:
         near = np.abs(at[:, :2] - detail.middle).max(axis=1) < detail.radius
         near &= (at[:, 2] > 0.6) | (detail.radius == 1.0)
         used, faces = np.unique(panel.F[near[panel.F].all(axis=1)], return_inverse=True)
-        parts.append(Panel(panel.label, panel.V[used], faces.reshape(-1, 3)))
+        signed = None if panel.signed is None else panel.signed[used]
+        parts.append(replace(panel, V=panel.V[used], F=faces.reshape(-1, 3), signed=signed))
     return side_by_side(parts, view=view, panel_size=(400, 400))
 
 
