@@ -93,10 +93,10 @@ Eigen::VectorXd TextureFilters::formOf(const Eigen::VectorXd& h, const std::vect
     const TransferFunction F = standardGaussian(std::sqrt(size * size - step * step), 0.0);
     const Eigen::MatrixXd slow =
         FullSpectrumEvaluator(F, kFormAccuracy, false, Solver::Cheapest)
-            .evaluate(coarse.laplacian, means, {1.0}, kFormAccuracy, progress)
+            .evaluate(coarse.laplacian, means, {1.0}, {kFormAccuracy}, progress)
             .Y[0];
     const Eigen::VectorXd form = slow.col(0).cwiseQuotient((slow.col(1) / scale).cwiseMax(kLeast));
-    return lowPasses(coarse.constantIn(form), {step}, kFormAccuracy, progress).Y[0];
+    return lowPasses(coarse.constantIn(form), {step}, {kFormAccuracy}, progress).Y[0];
 }
 
 }  // namespace spectral

@@ -67,8 +67,10 @@ class Limit {
   public:
     /// @param X   the input.
     /// @param E1  the shape that Y_1 is compared with.
-    Limit(const Vertices& X, Vertices E1, const LaplacianBuilder& laplacians)
-        : X_(X), laplacians_(laplacians), Y_(std::move(E1)) {}
+    /// @param isInner  n, or empty: true; elsewhere the border of a tile causes errors of its own.
+    Limit(const Vertices& X, Vertices E1, const LaplacianBuilder& laplacians,
+          const std::vector<bool>& isInner)
+        : X_(X), laplacians_(laplacians), isInner_(isInner), Y_(std::move(E1)) {}
 
     /// @param quarter  log areas around the vertices of F^(1/4)(sqrt(A)) X.
     void addFirst(Vertices Y, const Eigen::ArrayXd& quarter) {
@@ -120,7 +122,13 @@ class Limit {
     /// Fraction of the input surface where the estimated error exceeds the tolerance.
     double partBeyond(double tolerance) const {
         const Eigen::VectorXd& D = laplacians_.inputMass();
-        return (errors_.array() > tolerance).select(D, 0.0).sum() / D.sum();
+        double all = 0.0, beyond = 0.0;
+        for (Index i = 0; i < D.size(); ++i) {
+            if (!isInner(i)) continue;
+            all += D[i];
+            if (errors_[i] > tolerance) beyond += D[i];
+        }
+        return all > 0.0 ? beyond / all : 0.0;
     }
 
   private:
@@ -129,6 +137,7 @@ class Limit {
         const Vertices& shape = isExtrapolated_ ? E : Y;
         errors_ = distances(shape, E_.rows() > 0 ? E_ : Y_);
         isKept_ = laplacians_.mass(shape).array() >= kCollapsed * laplacians_.inputMass().array();
+        for (Index i = 0; i < isKept_.size(); ++i) isKept_[i] = isKept_[i] && isInner(i);
         distance_ = largestOf(errors_);
         E_ = std::move(E);
         Y_ = std::move(Y);
@@ -138,8 +147,11 @@ class Limit {
         return largestButNegligible(isKept_.select(lengths, 0.0), laplacians_.inputMass());
     }
 
+    bool isInner(Index i) const { return isInner_.empty() || isInner_[i]; }
+
     const Vertices& X_;
     const LaplacianBuilder& laplacians_;
+    const std::vector<bool>& isInner_;
     Vertices Y_, E_;                                // E_ is extrapolated; empty if it is Y_
     Eigen::VectorXd errors_;                        // n, estimated, where parts collapse, too
     Eigen::Array<bool, Eigen::Dynamic, 1> isKept_;  // n, false where parts collapse
@@ -175,9 +187,9 @@ AutomaticSteps automaticSteps(LaplacianBuilder& laplacians, StepEvaluator& evalu
     constexpr double kFirst = 0.1;
     AutomaticSteps result;
     laplacians.reset();
-    const auto predictFirst = [&](double from, double to) {
-        Evaluation evaluation =
-            evaluate.predict(laplacians.current(), X, {1.0, 0.5, 0.25}, progress.part(from, to));
+    const auto predictFirst = [&](double from, double to, bool areOthersCompared) {
+        Evaluation evaluation = evaluate.predict(laplacians.current(), X, {1.0, 0.5, 0.25},
+                                                 progress.part(from, to), areOthersCompared);
         std::vector<Vertices> shapes;
         for (Eigen::MatrixXd& Y : evaluation.Y) {
             shapes.emplace_back(Y);
@@ -185,7 +197,7 @@ AutomaticSteps automaticSteps(LaplacianBuilder& laplacians, StepEvaluator& evalu
         }
         return shapes;
     };
-    std::vector<Vertices> first = predictFirst(0.0, 0.5 * kFirst);
+    std::vector<Vertices> first = predictFirst(0.0, 0.5 * kFirst, false);
     if (options.keepThinParts) {
         ThinParts parts = thinPartFactors(laplacians.current().W, laplacians.faces(), X, first[2],
                                           first[0], options.tile);
@@ -193,10 +205,11 @@ AutomaticSteps automaticSteps(LaplacianBuilder& laplacians, StepEvaluator& evalu
         if (parts.factors.size() > 0) {
             first.clear();  // before another three shapes are computed
             laplacians.scaleMass(std::move(parts.factors));
-            first = predictFirst(0.5 * kFirst, kFirst);
+            first = predictFirst(0.5 * kFirst, kFirst, true);
         }
     }
-    Limit limit(X, std::move(first[0]), laplacians);
+    const std::vector<bool> whole;
+    Limit limit(X, std::move(first[0]), laplacians, options.tile ? options.tile->inner : whole);
     const Eigen::ArrayXd quarterAreas =
         logAreasAround(laplacians.current().W, laplacians.faces(), first[2]);
     // Of the second pass, by interpolation.

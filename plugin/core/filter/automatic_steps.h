@@ -21,7 +21,8 @@ struct AutomaticOptions {
     int passes = 0;              ///< Number of passes, whatever the error; 0: as many as needed.
     bool keepThinParts = false;  ///< For a low-pass: parts thinner than the feature size stay
                                  ///< (thin_parts.h).
-    const ThinPartsOfTile* tile = nullptr;  ///< If X is a tile of a surface.
+    const ThinPartsOfTile* tile = nullptr;  ///< If X is a tile of a surface: errors are those of
+                                            ///< its inner vertices.
 };
 
 /// Approximate limit of the paper's scheme for infinitely many steps.

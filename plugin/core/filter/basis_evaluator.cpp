@@ -23,13 +23,13 @@ constexpr Index kMinHarmonics = 200;
 }  // namespace
 
 Evaluation BasisEvaluator::evaluate(const Laplacian& laplacian, const Signals& X,
-                                    const std::vector<double>& alphas, double accuracy,
+                                    const std::vector<double>& alphas, const Accuracy& accuracy,
                                     const Progress& progress) {
     double done = 0.0;
     if (canDoWithoutBasis_) {
         done = 0.9;
         std::optional<Evaluation> evaluation =
-            aroundTheCut(laplacian, X, alphas, accuracy, progress.part(0.0, done));
+            aroundTheCut(laplacian, X, alphas, accuracy.value, progress.part(0.0, done));
         if (evaluation) return *std::move(evaluation);
         canDoWithoutBasis_ = false;  // later steps would fail, too
     }

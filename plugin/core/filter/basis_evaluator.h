@@ -31,7 +31,7 @@ class BasisEvaluator : public Evaluator {
         : F_(F), truncation_(truncation), atEveryVertex_(atEveryVertex) {}
 
     Evaluation evaluate(const Laplacian& laplacian, const Signals& X,
-                        const std::vector<double>& alphas, double accuracy,
+                        const std::vector<double>& alphas, const Accuracy& accuracy,
                         const Progress& progress) override;
 
   private:

@@ -26,6 +26,14 @@ inline double accuracyOfStep(double accuracy, double alpha) {
     return std::max(accuracy * alpha, kFinestAccuracy);
 }
 
+/// Requested accuracy, relative to the size of X.
+struct Accuracy {
+    double value;
+    /// Whether all powers but the middle one are only compared, or only give areas: they need not
+    /// be more accurate, where products are.
+    bool areOthersCompared = false;
+};
+
 /// What an evaluation took.
 struct Work {
     int factorizations = 0;    ///< Sparse LDL^T factorizations.
@@ -42,10 +50,9 @@ class Evaluator {
 
     /// F^alpha(sqrt(A)) X (Kovnatsky et al. 2012, Eqs. 6 to 8 and 11).
     /// @param alphas    powers, descending; the evaluation is tuned for the middle one.
-    /// @param accuracy  requested accuracy, relative to the size of X.
     /// @throws InvalidOption, SolverFailure, Cancelled
     virtual Evaluation evaluate(const Laplacian& laplacian, const Signals& X,
-                                const std::vector<double>& alphas, double accuracy,
+                                const std::vector<double>& alphas, const Accuracy& accuracy,
                                 const Progress& progress) = 0;
 
     /// The last computed basis, without its vectors; empty if none was used.

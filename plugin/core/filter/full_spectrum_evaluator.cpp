@@ -14,7 +14,8 @@ namespace {
 /// to measurements. There are more after the first evaluation: if products sufficed there, a
 /// symbolic analysis would pay off over fewer evaluations.
 int affordableProducts(Index n, bool isFirst) {
-    return static_cast<int>((isFirst ? 95.0 : 140.0) * std::pow(static_cast<double>(n) / 1e5, 0.2));
+    return static_cast<int>((isFirst ? 150.0 : 220.0) *
+                            std::pow(static_cast<double>(n) / 1e5, 0.2));
 }
 
 Evaluation joined(std::vector<FullSpectrumResult> results) {
@@ -65,11 +66,10 @@ std::vector<Gain> FullSpectrumEvaluator::gainsFor(const std::vector<double>& alp
 }
 
 Evaluation FullSpectrumEvaluator::evaluate(const Laplacian& laplacian, const Signals& X,
-                                           const std::vector<double>& alphas, double accuracy,
-                                           const Progress& progress) {
-    const FullSpectrumOptions options = optionsFor(accuracy);
+                                           const std::vector<double>& alphas,
+                                           const Accuracy& accuracy, const Progress& progress) {
     const std::vector<Gain> gains = gainsFor(alphas);
-    if (auto evaluation = evaluateByProducts(laplacian, gains, X, options, progress))
+    if (auto evaluation = evaluateByProducts(laplacian, gains, X, accuracy, progress))
         return *std::move(evaluation);
     const StopPoint stop = [&] { progress.report(0.0, "factorizing"); };
     stop();
@@ -79,17 +79,17 @@ Evaluation FullSpectrumEvaluator::evaluate(const Laplacian& laplacian, const Sig
     } catch (const Error& error) {
         if (error.code() != ErrorCode::OutOfMemory || solver_ == Solver::Factorization) throw;
         lacksMemory_ = true;
-        if (auto evaluation = evaluateByProducts(laplacian, gains, X, options, progress))
+        if (auto evaluation = evaluateByProducts(laplacian, gains, X, accuracy, progress))
             return *std::move(evaluation);
         throw;
     }
-    return evaluateInKrylovSpaces(laplacian, ldlt_, gains, X, options, progress);
+    return evaluateInKrylovSpaces(laplacian, ldlt_, gains, X, optionsFor(accuracy.value), progress);
 }
 
 Evaluation FullSpectrumEvaluator::evaluateAgain(const Laplacian& laplacian, const Signals& X,
                                                 const std::vector<double>& alphas, double accuracy,
                                                 const Progress& progress) {
-    if (ldlt_.factorizations() == 0) return evaluate(laplacian, X, alphas, accuracy, progress);
+    if (ldlt_.factorizations() == 0) return evaluate(laplacian, X, alphas, {accuracy}, progress);
     return evaluateInKrylovSpaces(laplacian, ldlt_, gainsFor(alphas), X, optionsFor(accuracy),
                                   progress);
 }
@@ -97,18 +97,22 @@ Evaluation FullSpectrumEvaluator::evaluateAgain(const Laplacian& laplacian, cons
 std::optional<Evaluation> FullSpectrumEvaluator::evaluateByProducts(const Laplacian& laplacian,
                                                                     const std::vector<Gain>& gains,
                                                                     const Signals& X,
-                                                                    FullSpectrumOptions options,
+                                                                    const Accuracy& accuracy,
                                                                     const Progress& progress) {
     const bool isRequired = solver_ == Solver::Products || lacksMemory_;
     // With a symbolic analysis at hand, factorizations cost less.
     const bool isWorthTrying = solver_ == Solver::Cheapest && ldlt_.factorizations() == 0;
     if (!isRequired && !isWorthTrying) return {};
+    FullSpectrumOptions options = optionsFor(finer_ * accuracy.value);
+    if (accuracy.areOthersCompared) options.accuracyOfOthers = accuracy.value;
     if (!isRequired) options.affordable = affordableProducts(laplacian.D.size(), products_ == 0);
     std::vector<FullSpectrumResult> results =
         applyFullSpectrum(laplacian, Products(laplacian, F_.cutoff()), gains, X, options, progress);
     if (results.empty()) return {};
     products_ += static_cast<int>(X.cols()) * results.front().dimension;
-    return joined(std::move(results));
+    Evaluation evaluation = joined(std::move(results));
+    evaluation.accuracyReached = evaluation.errorEstimate <= accuracy.value;
+    return evaluation;
 }
 
 }  // namespace spectral

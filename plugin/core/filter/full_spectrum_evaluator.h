@@ -38,12 +38,17 @@ class FullSpectrumEvaluator : public Evaluator {
     /// @param F  kept by reference.
     /// @param accuracy  of the whole filter; the poles are chosen for it.
     /// @param atEveryVertex  whether accuracy bounds the error of every vertex or over the surface.
+    /// @param finer  factor on the accuracy of products, <= 1.
     FullSpectrumEvaluator(const TransferFunction& F, double accuracy, bool atEveryVertex,
-                          Solver solver)
-        : F_(F), accuracy_(accuracy), atEveryVertex_(atEveryVertex), solver_(solver) {}
+                          Solver solver, double finer = 1.0)
+        : F_(F),
+          accuracy_(accuracy),
+          atEveryVertex_(atEveryVertex),
+          solver_(solver),
+          finer_(finer) {}
 
     Evaluation evaluate(const Laplacian& laplacian, const Signals& X,
-                        const std::vector<double>& alphas, double accuracy,
+                        const std::vector<double>& alphas, const Accuracy& accuracy,
                         const Progress& progress) override;
 
     /// The same on the Laplacian of the last evaluation, whose factorization serves again.
@@ -57,7 +62,7 @@ class FullSpectrumEvaluator : public Evaluator {
     /// Evaluates by products; empty if a factorization is chosen or expected to be cheaper.
     std::optional<Evaluation> evaluateByProducts(const Laplacian& laplacian,
                                                  const std::vector<Gain>& gains, const Signals& X,
-                                                 FullSpectrumOptions options,
+                                                 const Accuracy& accuracy,
                                                  const Progress& progress);
     double poleFor(const Laplacian& laplacian, double alpha);
 
@@ -65,6 +70,7 @@ class FullSpectrumEvaluator : public Evaluator {
     double accuracy_;
     bool atEveryVertex_;
     Solver solver_;
+    double finer_;
     std::optional<SpectrumRange> spectrum_;  // of the first Laplacian
     std::map<double, double> poles_;         // by power, for those requested so far
 };

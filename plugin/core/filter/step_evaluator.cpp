@@ -42,7 +42,7 @@ std::unique_ptr<Evaluator> evaluatorFor(const EvaluationOptions& options,
         return std::make_unique<BasisEvaluator>(F, std::nullopt, options.atEveryVertex);
     }
     return std::make_unique<FullSpectrumEvaluator>(F, options.accuracy, options.atEveryVertex,
-                                                   options.solver);
+                                                   options.solver, options.finerByProducts);
 }
 
 }  // namespace
@@ -56,18 +56,19 @@ StepEvaluator::StepEvaluator(const EvaluationOptions& options, const Interior& i
 
 Evaluation StepEvaluator::operator()(const Laplacian& surface, const Signals& X, double alpha,
                                      const Progress& progress) {
-    return evaluate(surface, X, {alpha}, accuracyOfStep(accuracy_, alpha), progress);
+    return evaluate(surface, X, {alpha}, {accuracyOfStep(accuracy_, alpha)}, progress);
 }
 
 Evaluation StepEvaluator::predict(const Laplacian& surface, const Signals& X,
-                                  const std::vector<double>& alphas, const Progress& progress) {
+                                  const std::vector<double>& alphas, const Progress& progress,
+                                  bool areOthersCompared) {
     const double step = std::min(1.0, 2.0 * alphas.front());  // which it is in the middle of
-    return evaluate(surface, X, alphas,
-                    std::min(accuracyOfStep(accuracy_, step), kPredictionAccuracy), progress);
+    const double accuracy = std::min(accuracyOfStep(accuracy_, step), kPredictionAccuracy);
+    return evaluate(surface, X, alphas, {accuracy, areOthersCompared}, progress);
 }
 
 Evaluation StepEvaluator::evaluate(const Laplacian& surface, const Signals& X,
-                                   const std::vector<double>& alphas, double accuracy,
+                                   const std::vector<double>& alphas, Accuracy accuracy,
                                    const Progress& progress) {
     requireUsable(surface);
     if (interior_.size() == 0) return {std::vector<Eigen::MatrixXd>(alphas.size(), X)};
@@ -81,7 +82,8 @@ Evaluation StepEvaluator::evaluate(const Laplacian& surface, const Signals& X,
     progress.report(0.0, "factorizing");
     const Laplacian inside = interior_.restricted(surface);
     const auto [U, relativeSize] = extension_.remainder(surface, inside, X);
-    if (relativeSize < 1.0) accuracy = std::min(accuracy / relativeSize, kCoarsestAccuracy);
+    if (relativeSize < 1.0)
+        accuracy.value = std::min(accuracy.value / relativeSize, kCoarsestAccuracy);
     Evaluation evaluation = evaluator_->evaluate(inside, U, alphas, accuracy, progress);
     evaluation.errorEstimate *= relativeSize;
     requireUsefulAccuracy(evaluation.errorEstimate);

@@ -28,6 +28,8 @@ struct EvaluationOptions {
     /// Maximum error of all steps together, relative to the size of the shape (FullSpectrumResult),
     /// if they are evaluated without a basis.
     double accuracy = 1e-6;
+    double finerByProducts = 1.0;  ///< Factor on it where products suffice, <= 1: there, an error a
+                                   ///< hundredth as large takes half as much time again.
     /// Whether the accuracy bounds the error of every vertex or that over the surface.
     bool atEveryVertex = true;
     Solver solver = Solver::Cheapest;  ///< For Spectrum::Full.
@@ -53,8 +55,10 @@ class StepEvaluator {
     /// The same for several powers, with at least three digits: for shapes that only provide
     /// Laplacians and do not enter the result themselves.
     /// @param alphas  the first is half of a step, or the whole filter.
+    /// @param areOthersCompared  see Accuracy.
     Evaluation predict(const Laplacian& surface, const Signals& X,
-                       const std::vector<double>& alphas, const Progress& progress);
+                       const std::vector<double>& alphas, const Progress& progress,
+                       bool areOthersCompared = false);
 
     const HarmonicBasis& basis() const { return evaluator_->basis(); }  ///< Empty if none was used.
     int computedBases() const { return evaluator_->computedBases(); }
@@ -68,7 +72,7 @@ class StepEvaluator {
 
   private:
     Evaluation evaluate(const Laplacian& surface, const Signals& X,
-                        const std::vector<double>& alphas, double accuracy,
+                        const std::vector<double>& alphas, Accuracy accuracy,
                         const Progress& progress);
 
     double accuracy_;

@@ -14,6 +14,8 @@ namespace spectral {
 
 struct FullSpectrumOptions {
     double accuracy = 1e-6;  ///< Requested error of Y, relative as in FullSpectrumResult.
+    /// Of several gains, that of all but the middle one, if larger.
+    double accuracyOfOthers = 0.0;
     int maxDimension = 200;  ///< Krylov dimension at which to give up.
     /// Give up without a result if more than this number of products per column is needed.
     std::optional<int> affordable;

@@ -69,8 +69,9 @@ class Centred {
 /// A gain as a series in t = theta / theta_max, from 0 to 1.
 struct GainSeries {
     ChebyshevSeries series;
-    double atZero;    ///< F(0).
-    double mismatch;  ///< Error of the series at the samples, relative, over the surface.
+    double atZero;           ///< F(0).
+    double mismatch;         ///< Error of the series at the samples, relative, over the surface.
+    double truncated = 0.0;  ///< Requested truncation error, relative to the signals.
 
     double coefficient(int k) const {
         const std::vector<double>& c = series.coefficients();
@@ -117,7 +118,7 @@ std::optional<GainSeries> seriesOf(const Gain& gain, const KrylovOperator& S,
             if (most && length > *most) return {};
             return result;
         }
-        if (most && nodes / 2 > *most) return {};
+        if (most && std::min(length, nodes / 2) > *most) return {};
         if (nodes == kMaxNodes) return most ? std::nullopt : std::optional(std::move(result));
     }
 }
@@ -160,20 +161,39 @@ class Errors {
 /// S = A / largest. Of differences, so that constants stay exactly 0.
 template <class Scalar, int Columns>
 class Product {
+    /// An off-diagonal entry of 2 D^-1 W / largest, in the precision of the terms.
+    struct Entry {
+        Scalar weight;
+        int row;
+    };
+
   public:
     using Values = Eigen::Array<Scalar, Columns, 1>;
     using Detail = Eigen::Array<double, Columns, 1>;
     static constexpr double kRoundOffOfTerm = std::is_same_v<Scalar, float> ? 6e-8 : kRoundOff;
     static constexpr bool kKeepsConstants = true;
+    static constexpr double kBytesOfRow = 6.0 * sizeof(Entry);
 
     Product(const Laplacian& laplacian, const KrylovOperator& S, const Signals& X, const Centred&)
         : laplacian_(laplacian), X_(X), largest_(S.lastFrequency() * S.lastFrequency()) {
-        twiceInverse_ = (2.0 / (largest_ * laplacian.D.array())).template cast<Scalar>();
+        const SparseMatrix& W = laplacian.W;  // symmetric: its columns are its rows
         if (laplacian.constants.label().minCoeff() < 0)
-            excess_ = laplacian.W * Eigen::VectorXd::Ones(laplacian.D.size());
+            excess_ = W * Eigen::VectorXd::Ones(W.rows());
+        entries_.resize(static_cast<std::size_t>(W.nonZeros() - W.rows()));
+        parallelRows(W.rows(), [&](Index begin, Index end) {
+            for (Index i = begin; i < end; ++i) {
+                Entry* next = &entries_[static_cast<std::size_t>(W.outerIndexPtr()[i] - i)];
+                for (SparseMatrix::InnerIterator entry(W, i); entry; ++entry)
+                    if (entry.row() != i)
+                        *next++ = {
+                            static_cast<Scalar>(2.0 / (largest_ * laplacian.D[i]) * entry.value()),
+                            static_cast<int>(entry.row())};
+            }
+        });
     }
 
     Index rowOf(Index vertex) const { return vertex; }
+    void release() { std::vector<Entry>().swap(entries_); }  ///< Frees memory: no more terms.
 
     /// Row i of S X, to double precision.
     Detail detail(Index i) const {
@@ -187,25 +207,28 @@ class Product {
 
     /// Maps i to row i of 2 S T.
     auto twice(const Values* T) const {
-        const SparseMatrix& W = laplacian_.W;  // symmetric: its columns are its rows
-        return [T, starts = W.outerIndexPtr(), neighbours = W.innerIndexPtr(),
-                weights = W.valuePtr(), scale = twiceInverse_.data(),
-                excess = excess_.size() > 0 ? excess_.data() : nullptr](Index i) -> Values {
+        return [T, starts = laplacian_.W.outerIndexPtr(), entries = entries_.data(),
+                excess = excess_.size() > 0 ? this : nullptr](Index i) -> Values {
             const Values here = T[i];
             Values sum = Values::Zero();
-            for (auto e = starts[i]; e < starts[i + 1]; ++e)
-                sum += static_cast<Scalar>(weights[e]) * (T[neighbours[e]] - here);
-            if (excess != nullptr) sum += static_cast<Scalar>(excess[i]) * here;
-            return scale[i] * sum;
+            const Entry* const end = entries + (starts[i + 1] - i - 1);
+            for (const Entry* e = entries + (starts[i] - i); e != end; ++e)
+                sum += e->weight * (T[e->row] - here);
+            if (excess != nullptr) sum += excess->ofExcess(i) * here;
+            return sum;
         };
     }
 
   private:
+    Scalar ofExcess(Index i) const {
+        return static_cast<Scalar>(2.0 * excess_[i] / (largest_ * laplacian_.D[i]));
+    }
+
     const Laplacian& laplacian_;
     const Signals& X_;
     double largest_;
-    Eigen::Matrix<Scalar, Eigen::Dynamic, 1> twiceInverse_;  // 2 / (D_ii largest)
-    Eigen::VectorXd excess_;  // row sums of W, if there is a fixed boundary
+    std::vector<Entry> entries_;  // of the columns of W, each without its diagonal
+    Eigen::VectorXd excess_;      // row sums of W, if there is a fixed boundary
 };
 
 /// S / theta_max of a ShiftInvert; rows are in the order of S.
@@ -216,6 +239,7 @@ class Solve {
     using Detail = Values;
     static constexpr double kRoundOffOfTerm = kRoundOff;
     static constexpr bool kKeepsConstants = false;
+    static constexpr double kBytesOfRow = sizeof(Values);
 
     Solve(const Laplacian& laplacian, const KrylovOperator& S, const Signals& X,
           const Centred& centred)
@@ -236,6 +260,7 @@ class Solve {
     }
 
     Index rowOf(Index vertex) const { return S_.order()[vertex]; }
+    void release() { result_.resize(0); }  ///< Frees memory: no more terms.
 
     /// Row i of (S - theta_0) X / theta_max, before any term.
     Values detail(Index i) const {
@@ -274,13 +299,13 @@ class Terms {
 
     const Details& details() const { return details_; }
 
-    /// Sums the terms until all truncation errors are within the accuracy, or the coefficients end.
+    /// Sums the terms until all truncation errors are as requested, or the coefficients end.
     /// @param largest  largest entry of any term: that of T_0 at first.
     /// @return         number of terms.
-    int add(const std::vector<GainSeries>& series, const Errors& errors, double accuracy,
-            double& largest, const Progress& progress) {
+    int add(const std::vector<GainSeries>& series, const Errors& errors, double& largest,
+            const Progress& progress) {
         const auto isLast = [&](const GainSeries& gain, int k) {
-            return gain.tail(k) == 0.0 || errors.truncation(gain, k, largest) <= accuracy;
+            return gain.tail(k) == 0.0 || errors.truncation(gain, k, largest) <= gain.truncated;
         };
         int last = 1;  // as far as T_0 tells
         for (const GainSeries& gain : series)
@@ -295,6 +320,7 @@ class Terms {
                 continue;
             if (k % 2 == 0) addNewest(k, series);
             for (Rows* rows : {&newest_, &before_}) Rows().swap(*rows);
+            operator_.release();
             return k + 1;
         }
     }
@@ -412,7 +438,7 @@ std::optional<std::vector<FullSpectrumResult>> evaluate(
     bool mayRoundOff, const Progress& progress) {
     // Two terms, and a sum and a result for each gain.
     const double count = static_cast<double>(gains.size()),
-                 bytes = sizeof(typename Operator::Values) * (2.0 + count) +
+                 bytes = Operator::kBytesOfRow + sizeof(typename Operator::Values) * (2.0 + count) +
                          sizeof(double) * static_cast<double>(X.cols()) * count;
     requireMemory(bytes * static_cast<double>(X.rows()), X.rows());
     const Centred centred(X, laplacian.constants);
@@ -425,24 +451,25 @@ std::optional<std::vector<FullSpectrumResult>> evaluate(
     constexpr double kAtVertices = 1e-2;
     const double share = options.atEveryVertex ? kAtVertices : 1.0;
     const std::optional<int> most = S.isProduct() ? options.affordable : kMaxSolves;
+    const auto accuracyOf = [&](std::size_t gain) {
+        return gain == gains.size() / 2 ? options.accuracy
+                                        : std::max(options.accuracy, options.accuracyOfOthers);
+    };
+    const Errors errors(details, options, Operator::kRoundOffOfTerm);
     std::vector<GainSeries> series;
-    for (const Gain& gain : gains) {
-        auto found = seriesOf(gain, S, omega, details, share * options.accuracy, most);
+    for (std::size_t g = 0; g < gains.size(); ++g) {
+        const double accuracy = accuracyOf(g);
+        auto found = seriesOf(gains[g], S, omega, details, share * accuracy, most);
         if (!found) return std::vector<FullSpectrumResult>();
+        const double others = errors.others(*found, details.largest);
+        if (!mayRoundOff && others - found->mismatch > kShareOfOthers * accuracy) return {};
+        // At the vertices the bound is often reached, and steps add up: one term more, of some 12.
+        found->truncated =
+            options.atEveryVertex ? 0.25 * accuracy : std::max(accuracy - others, 0.5 * accuracy);
         series.push_back(*std::move(found));
     }
-    const Errors errors(details, options, Operator::kRoundOffOfTerm);
-    double left = options.accuracy;
-    for (const GainSeries& gain : series) {
-        const double others = errors.others(gain, details.largest);
-        if (!mayRoundOff && others - gain.mismatch > kShareOfOthers * options.accuracy) return {};
-        left = std::min(left, options.accuracy - others);
-    }
     double largest = details.largest;
-    // At the vertices the bound is often reached, and steps add up: one term more, of some 12.
-    const double truncated =
-        options.atEveryVertex ? 0.25 * options.accuracy : std::max(left, 0.5 * options.accuracy);
-    const int length = terms.add(series, errors, truncated, largest, progress);
+    const int length = terms.add(series, errors, largest, progress);
 
     std::vector<FullSpectrumResult> results(gains.size());
     for (std::size_t g = 0; g < gains.size(); ++g) {
@@ -458,7 +485,7 @@ std::optional<std::vector<FullSpectrumResult>> evaluate(
         result.dimension = length;
         result.errorEstimate =
             errors.truncation(series[g], length, largest) + errors.others(series[g], largest);
-        result.converged = result.errorEstimate <= options.accuracy;
+        result.converged = result.errorEstimate <= accuracyOf(g);
         if (!result.converged) result.errorEstimate *= kNotConverged;
     }
     return results;

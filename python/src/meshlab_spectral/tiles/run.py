@@ -284,9 +284,12 @@ def _filtered(
     if options.steps == 0 and options.passes == 0 and options.basis_update != "none":
         while decided["passes"] < _MOST_PASSES:
             decided["passes"] += 1
-            if singular_part(do_asked(decided)) <= _NEGLIGIBLE:
+            reports = do_asked(decided)
+            if not decided["has_thin_parts"] and _has_thin_parts(reports):
+                decided["has_thin_parts"] = True  # else what must stay would ask for more passes
+                reports = do_asked(decided)
+            if singular_part(reports) <= _NEGLIGIBLE:
                 break
-        decided["has_thin_parts"] = _has_thin_parts(do_asked(decided))
     reports = do(every, decided)
     if not decided["has_thin_parts"] and _has_thin_parts(reports):
         decided["has_thin_parts"] = True
