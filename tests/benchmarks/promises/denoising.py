@@ -28,9 +28,9 @@ from promises.record import (
 # round them.
 BY_KIND: dict[str, tuple[tuple[str, ...], float]] = {
     "smooth shapes, noise of 0.2 to 0.3 edges (4)": (GROUPS["smooth shapes"], 6.85),
-    "machine parts, noise of 0.3 to 0.4 edges (3)": (GROUPS["machine parts"], 3.55),
+    "machine parts, noise of 0.3 to 0.4 edges (3)": (GROUPS["machine parts"], 3.35),
     "synthetic, noise of 0.1 to 0.3 edges (25)": (GROUPS["synthetic"], 2.05),
-    "noise in all directions": (("TGV_Block",), 2.15),
+    "noise in all directions": (("TGV_Block",), 1.95),
     "impulses at all vertices": (("nicolo_i6",), 5.45),
     "spikes at a fifth of the vertices": (("pierrot_i3",), 4.25),
     "a Kinect scan": (("kinect_Cone",), 8.55),
