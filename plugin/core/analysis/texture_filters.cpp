@@ -96,7 +96,7 @@ Eigen::VectorXd TextureFilters::formOf(const Eigen::VectorXd& h, const std::vect
             .evaluate(coarse.laplacian, means, {1.0}, {kFormAccuracy}, progress)
             .Y[0];
     const Eigen::VectorXd form = slow.col(0).cwiseQuotient((slow.col(1) / scale).cwiseMax(kLeast));
-    return lowPasses(coarse.constantIn(form), {step}, {kFormAccuracy}, progress).Y[0];
+    return lowPasses(coarse.constantIn(form), {step}, kFormAccuracy, progress).Y[0];
 }
 
 }  // namespace spectral
