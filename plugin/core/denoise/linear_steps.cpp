@@ -164,8 +164,8 @@ Points shapeOf(const Stages& stages, const Points& X, const std::vector<bool>& m
 /// the surface are louder where it is higher. Those of an irregular mesh are alike everywhere.
 bool hasAllDirections(const VertexGraph& graph, const Points& X, const Points& N,
                       const NoiseField& noise) {
-    // Of what such noise would make: up to .01 where noise is along normals, .59
-    // and more where it is not.
+    // Of what such noise would make: up to .01 where noise is along normals, .59 and more where it
+    // is not.
     constexpr double kMinRise = 0.3;
     constexpr double kMedianOfTwo = 1.386;  // squared length of a normal distribution in a plane
     const Eigen::VectorXd squares = noise.height.cwiseQuotient(noise.edge).cwiseAbs2();

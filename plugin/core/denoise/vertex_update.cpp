@@ -12,8 +12,8 @@ namespace {
 
 /// The weight of each face at each vertex, in the order of graph.faces; sums to 1 at each vertex.
 Eigen::VectorXd weightsOfFaces(const FaceGraph& graph, const Points& X) {
-    // Altitude over distance is 1.5 for equilateral triangles. With .5, depth maps of
-    // a cone lose .1 degrees; triangles across silhouettes and skirts have below .1.
+    // Altitude over distance is 1.5 for equilateral triangles. With .5, depth maps of a cone
+    // lose .1 degrees; triangles across silhouettes and skirts have below .1.
     constexpr double kMinRatio = 0.25;
     Eigen::VectorXd altitude(graph.faceCount());  // squared
     Points centroid(graph.faceCount(), 3);
