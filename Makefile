@@ -200,10 +200,11 @@ $(PACKAGES): plugin/cmake/debian_packages.txt plugin/cmake/install_debian_packag
 	plugin/cmake/install_debian_packages.sh $<
 	@mkdir -p $(@D) && touch $@
 
-# Wheels only: no package gets to run a set-up script, and none needs a compiler.
+# Wheels only: no package gets to run a set-up script, and none needs a compiler. Python compiles
+# what is imported, a small part.
 $(VENV): python/requirements.txt | $(PACKAGES)
 	$(PYTHON) -m venv .venv
-	$(BIN)/pip install --quiet --disable-pip-version-check --only-binary :all: --require-hashes -r $<
+	$(BIN)/pip install --no-compile --quiet --disable-pip-version-check --only-binary :all: --require-hashes -r $<
 	@touch $@
 
 # What the basis, the signatures and texture are compared with. scikit-sparse alone has no wheel.
