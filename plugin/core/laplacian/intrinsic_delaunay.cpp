@@ -122,6 +122,7 @@ IntrinsicDelaunay::IntrinsicDelaunay(const Vertices& V, const Faces& F) : vertex
 
     tail_.resize(static_cast<std::size_t>(copies_) * front);
     twin_.resize(tail_.size());
+    first_.resize(front);
     for (int s = 0; s < front; ++s) tail_[s] = F(s / 3, s % 3);
 
     // The back of a triangle (a, b, c) is (a, c, b): its side 2 - s lies on side s of the front.
@@ -129,6 +130,7 @@ IntrinsicDelaunay::IntrinsicDelaunay(const Vertices& V, const Faces& F) : vertex
     if (copies_ == 2)
         for (int s = 0; s < front; ++s) tail_[back(s)] = F(s / 3, (s + 1 - 3 * (s / 3)) % 3);
     edges.forEachEdgeInParallel([&](Side* first, Side* last) {
+        first_[first->number] = 1;
         if (last - first > 2) sortByAngle(V, F, first, last);
         // The copy that runs up the edge faces larger angles: it is glued to the copy of the next
         // triangle that runs down. The triangle of a boundary edge is glued to its own back.
@@ -151,8 +153,9 @@ IntrinsicTriangulation IntrinsicDelaunay::triangulation(const Vertices& V) && {
     });
 
     // The smallest mollification that makes every triangle inequality hold by the margin.
+    const double edgeCount = std::accumulate(first_.begin(), first_.end(), 0.0);
     const double meanLength =
-        std::accumulate(length.begin(), length.end(), 0.0) / static_cast<double>(length.size());
+        std::inner_product(first_.begin(), first_.end(), length.begin(), 0.0) / edgeCount;
     const auto margin = [&](double shortest) {
         const double usual = kMollification * meanLength;
         return shortest > kPoint * meanLength ? std::min(usual, kShareOfNeedle * shortest) : usual;

@@ -39,9 +39,10 @@ class IntrinsicDelaunay {
 
   private:
     Index vertexCount_;
-    int copies_;             // copies of every triangle in the cover: 1 or 2
-    std::vector<int> tail_;  // first vertex of each side, see IntrinsicTriangulation
-    std::vector<int> twin_;  // side glued to each side
+    int copies_;               // copies of every triangle in the cover: 1 or 2
+    std::vector<int> tail_;    // first vertex of each side, see IntrinsicTriangulation
+    std::vector<int> twin_;    // side glued to each side
+    std::vector<char> first_;  // of each side of F, whether it is the first of its edge, or 0
 };
 
 }  // namespace spectral

@@ -18,6 +18,19 @@ def test_the_default_is_that_of_robust_laplacian(decimated: Any) -> None:
     assert abs(W - expected).max() < 1e-9 * abs(expected).max()
 
 
+def test_lengths_are_mollified_by_the_mean_of_the_edges() -> None:
+    """Not of the sides, among which those within a boundary count twice."""
+    V = np.array([[x, y, 0.0] for x in range(6) for y in range(4)])
+    a = np.array([4 * x + y for x in range(5) for y in range(3)])
+    F = np.concatenate([np.c_[a, a + 4, a + 5], np.c_[a, a + 5, a + 1]])
+    V += 0.3 * np.random.default_rng(0).normal(size=V.shape)
+    V[5] = 0.5 * (V[0] + V[4]) + 1e-6  # a flat triangle
+    expected, _ = robust_laplacian.mesh_laplacian(V, F)
+    unmollified, _ = robust_laplacian.mesh_laplacian(V, F, mollify_factor=0.0)
+    assert abs(unmollified - expected).max() > 1e-4
+    assert abs(laplacian(V, F)[0] - expected).max() < 1e-11
+
+
 @pytest.mark.parametrize("kind", ["intrinsic delaunay", "cotangent", "uniform"])
 def test_constants_are_in_the_kernel_and_masses_sum_to_the_area(kind: Any, decimated: Any) -> None:
     V, F = decimated("bunny.obj")
