@@ -424,9 +424,9 @@ def _selected(tables: dict[str, _Table], count: int) -> NDArray[np.bool_] | None
     chosen = np.zeros(count, bool)
     if "flags" in tables["vertex"]:
         chosen |= is_selected(tables["vertex"]["flags"])
-    faces = _corners(tables.get("face", {}))
-    if faces and "flags" in tables["face"]:
-        flags = is_selected(tables["face"]["flags"])
+    face = tables.get("face", {})
+    if "flags" in face and (faces := _corners(face)):
+        flags = is_selected(face["flags"])
         chosen[faces[0][np.repeat(flags, faces[1])]] = True
     return chosen if chosen.any() else None
 
