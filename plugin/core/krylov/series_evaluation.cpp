@@ -198,9 +198,13 @@ class Product {
     /// Row i of S X, to double precision.
     Detail detail(Index i) const {
         Detail sum = Detail::Zero();
-        for (SparseMatrix::InnerIterator entry(laplacian_.W, i); entry; ++entry)
-            for (Index c = 0; c < X_.cols(); ++c)
-                sum[c] += entry.value() * (X_(entry.row(), c) - X_(i, c));
+        const double* column = X_.data();
+        for (Index c = 0; c < X_.cols(); ++c, column += X_.outerStride()) {
+            double differences = 0.0;  // a register, unlike sum[c]
+            for (SparseMatrix::InnerIterator entry(laplacian_.W, i); entry; ++entry)
+                differences += entry.value() * (column[entry.row()] - column[i]);
+            sum[c] = differences;
+        }
         for (Index c = 0; excess_.size() > 0 && c < X_.cols(); ++c) sum[c] += excess_[i] * X_(i, c);
         return sum / (laplacian_.D[i] * largest_);
     }

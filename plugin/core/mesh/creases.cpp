@@ -11,6 +11,8 @@ namespace spectral {
 
 std::vector<std::array<Index, 2>> creaseEdges(const Vertices& X, const Faces& F, double angle) {
     std::vector<std::array<Index, 2>> edges;
+    if (angle >= 180.0) return edges;  // no fold is sharper
+    const double sine = std::sin(angle * kPi / 180.0), cosine = std::cos(angle * kPi / 180.0);
     SidesByEdge(F).forEachEdge([&](auto first, auto end) {
         const Eigen::RowVector3d origin = X.row(first->low);
         const Eigen::RowVector3d edge = X.row(first->high) - origin;
@@ -19,7 +21,7 @@ std::vector<std::array<Index, 2>> creaseEdges(const Vertices& X, const Faces& F,
             // Normals of both triangles as seen from one side of the surface.
             const Eigen::RowVector3d a = edge.cross(X.row(corner(side)) - origin);
             const Eigen::RowVector3d b = (X.row(corner(other)) - origin).cross(edge);
-            return std::atan2(a.cross(b).norm(), a.dot(b)) > angle * kPi / 180.0;
+            return a.cross(b).norm() * cosine > a.dot(b) * sine;
         };
         const bool isPair = end - first == 2;
         for (auto side = first; side != end; ++side)

@@ -3,12 +3,24 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <cstring>
 #include <limits>
 #include <vector>
 
 #include "core/support/threads.h"
 
 namespace spectral {
+
+namespace {
+
+std::vector<bool> usedBy(const Faces& F, Index n) {
+    std::vector<bool> isUsed(static_cast<std::size_t>(n), false);
+    for (const int i : F.reshaped()) isUsed[i] = true;
+    return isUsed;
+}
+
+}  // namespace
 
 double boundingBoxDiagonal(const Vertices& V) {
     return (V.colwise().maxCoeff() - V.colwise().minCoeff()).norm();
@@ -26,12 +38,13 @@ MeshLengths lengthsOf(const Vertices& V, const Faces& F) {
     };
     MeshLengths lengths;
     lengths.filler = fillerOf(V, F);
-    for (Index i = 0; i < V.rows(); ++i) extend(all, i);
-    for (Index t = 0; t < F.rows(); ++t)
-        for (int c = 0; c < 3; ++c)
-            if (lengths.filler.vertices == 0 ||
-                V(F(t, c), lengths.filler.axis) != lengths.filler.value)
-                extend(surface, F(t, c));
+    const std::vector<bool> isUsed = usedBy(F, V.rows());
+    for (Index i = 0; i < V.rows(); ++i) {
+        extend(all, i);
+        if (isUsed[i] &&
+            (lengths.filler.vertices == 0 || V(i, lengths.filler.axis) != lengths.filler.value))
+            extend(surface, i);
+    }
     lengths.meanEdge = meanEdgeLength(V, F);
     lengths.diagonal = diagonalOf(all);
     lengths.surfaceDiagonal = diagonalOf(surface.isEmpty() ? all : surface);
@@ -43,12 +56,6 @@ MeshLengths lengthsOf(const Vertices& V, const Faces& F) {
 }
 
 namespace {
-
-std::vector<bool> usedBy(const Faces& F, Index n) {
-    std::vector<bool> isUsed(static_cast<std::size_t>(n), false);
-    for (const int i : F.reshaped()) isUsed[i] = true;
-    return isUsed;
-}
 
 /// The lowest of the used coordinates, times a sign, along an axis, and how many vertices have it;
 /// none unless the others are farther from it than from each other, and those by more than the
@@ -100,15 +107,15 @@ double meanEdgeLength(const Vertices& V, const Faces& F) {
     // Walls around the cells of a terrain without data are 100 to 10,000 cells long, sides of parts
     // by CAD up to 48 and 215 times their median; but these lead to no vertices far from all
     // others.
-    constexpr int kLonger = 6;  // by exponents of 2
-    constexpr int kExponents = 4096;
+    constexpr int kLonger = 6;        // by exponents of 2
+    constexpr int kExponents = 2048;  // of doubles; the last is that of infinity
     const auto length = [&](Index t, int c) {
         return (V.row(F(t, (c + 1) % 3)) - V.row(F(t, c))).norm();
     };
     const auto exponentOf = [](double side) {
-        int exponent = 0;
-        std::frexp(side, &exponent);
-        return exponent;
+        std::uint64_t bits = 0;  // as std::frexp, without a call for each side
+        std::memcpy(&bits, &side, sizeof bits);
+        return static_cast<int>(bits >> 52 & 0x7ff);
     };
     double sum = 0.0;
     std::vector<Index> counts(kExponents, 0);
@@ -116,21 +123,21 @@ double meanEdgeLength(const Vertices& V, const Faces& F) {
         for (int c = 0; c < 3; ++c) {
             const double side = length(t, c);
             sum += side;
-            ++counts[std::clamp(exponentOf(side) + kExponents / 2, 0, kExponents - 1)];
+            ++counts[exponentOf(side)];
         }
     Index below = 0;
     int median = 0;
     while (median + 1 < kExponents && 2 * (below + counts[median]) < 3 * F.rows())
         below += counts[median++];
     Index longer = 0;
-    for (int e = median + kLonger + 1; e < kExponents; ++e) longer += counts[e];
+    for (int e = median + kLonger + 1; e < kExponents - 1; ++e) longer += counts[e];
     Index walls = 0;
     const std::vector<bool> isApart = longer > 0 ? farVertices(V, F) : std::vector<bool>();
     for (Index t = 0; longer > 0 && t < F.rows(); ++t)
         for (int c = 0; c < 3; ++c) {
             if (isApart[F(t, c)] == isApart[F(t, (c + 1) % 3)]) continue;
             const double side = length(t, c);
-            if (exponentOf(side) + kExponents / 2 <= median + kLonger) continue;
+            if (exponentOf(side) <= median + kLonger) continue;
             sum -= side;
             ++walls;
         }
