@@ -21,6 +21,7 @@ import pytest
 from commands import PRECIOUS
 from hypothesis import HealthCheck, settings
 from numpy.typing import NDArray
+from small_pictures import draw_small
 
 SAMPLES = Path(pymeshlab.__file__).parent / "tests" / "sample_meshes"
 SAMPLE_NAMES = ("bunny.obj", "cow.obj")  # with a boundary, and closed
@@ -64,6 +65,7 @@ def pytest_runtest_setup(item: pytest.Item) -> None:
 @pytest.fixture(scope="session", autouse=True)
 def _plugin_loaded() -> None:
     meshlab_spectral.load()
+    draw_small()
 
 
 @pytest.fixture
