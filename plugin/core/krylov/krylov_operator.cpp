@@ -44,34 +44,32 @@ Row<Columns> innerProducts(const Eigen::VectorXd& D, const double* Q, const doub
     });
 }
 
-/// Bound on the eigenvalues of D^-1 W: the largest sum of two neighbours' r_i = sum_j |W_ij| /
-/// D_ii, j != i, as if all weights were positive. With B the differences along edges and C their
-/// weights, W = B^T C B, and B D^-1 B^T C has the same eigenvalues: this is Gershgorin's bound for
-/// it (Anderson and Morley 1985). Where one sliver has the largest r_i, it is up to half of 2 max
-/// r_i.
+/// Powers beside ones that the bound is sharpened by, each a pass over W: the second saves 1 to 5 %
+/// of the terms of a series, a third less than half a term.
+constexpr int kPowers = 2;
+
+/// Bound on the eigenvalues of D^-1 W: those of M = D^-1 |W| are at most max_i (M x)_i / x_i, for
+/// any x > 0 (Collatz 1942). x = 1 gives Gershgorin's bound, x = M^k 1 ever sharper ones: where
+/// slivers have the largest row sums, down to half of it.
 double eigenvalueBound(const Laplacian& laplacian) {
     const SparseMatrix& W = laplacian.W;
-    Eigen::VectorXd r(W.rows());
-    parallelRows(W.rows(), [&](Index begin, Index end) {
-        for (Index i = begin; i < end; ++i) {
-            double sum = 0.0, excess = 0.0;  // an edge to a fixed boundary
-            for (SparseMatrix::InnerIterator entry(W, i); entry; ++entry) {
-                excess += entry.value();
-                if (entry.row() != i) sum += std::abs(entry.value());
+    Eigen::VectorXd x = Eigen::VectorXd::Ones(W.rows()), Mx(W.rows());
+    double bound = 0.0;
+    for (int power = 0; power <= kPowers; ++power) {
+        if (power > 0) x = Mx / std::max(bound, std::numeric_limits<double>::min());
+        bound = parallelMax(W.rows(), [&](Index begin, Index end) {
+            double largest = 0.0;
+            for (Index i = begin; i < end; ++i) {
+                double sum = 0.0;
+                for (SparseMatrix::InnerIterator entry(W, i); entry; ++entry)
+                    sum += std::abs(entry.value()) * x[entry.row()];
+                Mx[i] = sum / laplacian.D[i];
+                if (x[i] > 0.0) largest = std::max(largest, Mx[i] / x[i]);  // 0: no neighbours
             }
-            r[i] = (sum + std::abs(excess)) / laplacian.D[i];
-        }
-    });
-    return parallelMax(W.rows(), [&](Index begin, Index end) {
-        double bound = 0.0;
-        for (Index i = begin; i < end; ++i) {
-            bound = std::max(bound, r[i]);
-            for (SparseMatrix::InnerIterator entry(W, i); entry; ++entry)
-                if (entry.row() != i && entry.value() != 0.0)
-                    bound = std::max(bound, r[i] + r[entry.row()]);
-        }
-        return bound;
-    });
+            return largest;
+        });
+    }
+    return bound;
 }
 
 }  // namespace
