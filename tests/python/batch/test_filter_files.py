@@ -105,7 +105,8 @@ def test_an_output_that_appears_before_its_turn_is_kept(meshes: Path, tmp_path: 
 def test_a_file_that_kills_its_process_again_and_again_fails_alone(
     meshes: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    inputs = sorted(meshes.iterdir())[:3]
+    large = make_meshes(tmp_path / "in", 1, rings=100)  # a second of work: killed before its end
+    inputs = [*large, *sorted(meshes.iterdir())[1:3]]
 
     def run_and_die(process: MeshLabProcess, job: dict[str, Any], **options: Any) -> Answer:
         def kill(stage: str, fraction: float | None) -> None:
@@ -116,7 +117,7 @@ def test_a_file_that_kills_its_process_again_and_again_fails_alone(
 
     run = MeshLabProcess.run
     monkeypatch.setattr(MeshLabProcess, "run", run_and_die)
-    results = {r.name: r for r in filter_files(inputs, tmp_path / "out", workers=1, steps=1)}
+    results = {r.name: r for r in filter_files(inputs, tmp_path / "out", workers=1, steps=100)}
     failed = results.pop(inputs[0].name)
     assert failed.outcome == "failed"
     assert "SIGKILL" in (failed.reason or "")
