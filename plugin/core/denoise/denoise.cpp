@@ -183,12 +183,6 @@ Points denoisePart(const MovingPart& part, const FaceGraph& graph, const Denoise
         result.isCrumpled = true;
         done = {diagnosis.X, 0};
     }
-    if (done.isOfShape && !isKnown && options.strength <= 1.0) {
-        diagnosis.kind = NoiseKind::Shape;
-        diagnosis.noise.isShape = true;
-        diagnosis.noise.height = 0.0;
-        done = {diagnosis.X, 0};
-    }
     result.rounds = done.rounds;
     const double strength = std::min(options.strength, 1.0);
     if (done.rounds > 0 && !diagnosis.hasVoxels()) {

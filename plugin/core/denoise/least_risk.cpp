@@ -49,8 +49,8 @@ Coefficients solved(const Gram& A, const Coefficients& b) {
 
 }  // namespace
 
-LeastRisk withLeastRisk(const FaceGraph& graph, const Points& X, const std::vector<bool>& mayMove,
-                        double height) {
+Points withLeastRisk(const FaceGraph& graph, const Points& X, const std::vector<bool>& mayMove,
+                     double height) {
     // Residuals along the surface are those of noise in all directions if they are as high as those
     // along the normals, in each direction of space.
     constexpr double kLeastAlike = 0.8, kMostAlike = 1.3;
@@ -80,7 +80,7 @@ LeastRisk withLeastRisk(const FaceGraph& graph, const Points& X, const std::vect
     const double taken =
         change.norm() / (height * std::sqrt(static_cast<double>(std::max<Index>(n, 1))));
     const double share = std::pow(std::min(1.0, kMaxTaken / taken), 2);
-    LeastRisk result{X + (share * change).asDiagonal() * N, (share - 2.0) * share * taken * taken};
+    Points moved = X + (share * change).asDiagonal() * N;
 
     const Eigen::Array3d axes = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(squares)
                                     .eigenvalues()
@@ -90,7 +90,7 @@ LeastRisk withLeastRisk(const FaceGraph& graph, const Points& X, const std::vect
                                 (height * std::sqrt(whiteSquares));
     const double tangential =
         std::sqrt((squares.trace() - along.col(0).squaredNorm()) / 2.0 / whiteSquares) / height;
-    if (!(std::min(axes[0], tangential) > kLeastAlike && tangential < kMostAlike)) return result;
+    if (!(std::min(axes[0], tangential) > kLeastAlike && tangential < kMostAlike)) return moved;
 
     std::vector<Points> parts;
     forEachPolynomial(averaged, start, [&](int j, const Rows& all) {
@@ -101,8 +101,8 @@ LeastRisk withLeastRisk(const FaceGraph& graph, const Points& X, const std::vect
         for (int k = 0; k <= j; ++k)
             gram(j, k) = gram(k, j) = parts[j].cwiseProduct(parts[k]).sum();
     const Coefficients d = solved(gram, -2.0 * variance * trace);
-    for (int j = 0; j < kDegree; ++j) result.X += share * d[j] * parts[j];
-    return result;
+    for (int j = 0; j < kDegree; ++j) moved += share * d[j] * parts[j];
+    return moved;
 }
 
 }  // namespace spectral

@@ -6,13 +6,6 @@
 
 namespace spectral {
 
-/// Positions without noise, and how far they are from the truth.
-struct LeastRisk {
-    Points X;
-    double risk;  ///< Estimated mean squared distance along the normals, over the noise's variance,
-                  ///< less 1: 0 as it came, -1 for the truth.
-};
-
 /// Removes white noise by the polynomial of the neighbours' mean P of least estimated risk: the
 /// displacement is U c, where the columns of U are (T_j(P) - 1) X along the normals, T_j are
 /// Chebyshev polynomials, and
@@ -27,7 +20,8 @@ struct LeastRisk {
 /// @param X        n x 3 positions.
 /// @param mayMove  n: whether a vertex may move.
 /// @param height   standard deviation of the noise, length units, > 0.
-LeastRisk withLeastRisk(const FaceGraph& graph, const Points& X, const std::vector<bool>& mayMove,
-                        double height);
+/// @return         n x 3 positions.
+Points withLeastRisk(const FaceGraph& graph, const Points& X, const std::vector<bool>& mayMove,
+                     double height);
 
 }  // namespace spectral

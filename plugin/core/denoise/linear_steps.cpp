@@ -85,9 +85,8 @@ constexpr double kTiny = 1e-300;
 struct Stages {
     std::vector<Points> X;
     std::vector<int> steps;
-    std::vector<double> trace;  ///< Of the linear map less 1, over the vertices.
-    Eigen::VectorXd best;       ///< n: index of the stage, between two of them as well.
-    Eigen::VectorXd error;      ///< n: of the slopes, relative to those of the noise.
+    Eigen::VectorXd best;   ///< n: index of the stage, between two of them as well.
+    Eigen::VectorXd error;  ///< n: of the slopes, relative to those of the noise.
 };
 
 Stages takeStages(const FaceGraph& graph, const VertexGraph& averaged, const Points& X,
@@ -140,7 +139,6 @@ Stages takeStages(const FaceGraph& graph, const VertexGraph& averaged, const Poi
         if (!isBetter) break;
         stages.X.emplace_back(Y.leftCols<3>());
         stages.steps.push_back(steps);
-        stages.trace.push_back(white.dot(Y.col(3) - white) / white.squaredNorm());
     }
     stages.best = Average(graph.vertices, mayMove, kCounts, noise.isAlike()).of(stages.best);
     stages.error = least.cwiseSqrt();
@@ -236,9 +234,6 @@ LinearSteps linearSteps(const FaceGraph& graph, const VertexGraph& means, const 
     const bool isAlike = noise.isAlike();
     if (isAlike || !hasAllDirections(graph.vertices, X, N, noise))
         result.X = X + along.asDiagonal() * N;
-    if (isAlike)
-        result.risk = along.squaredNorm() / noise.height.squaredNorm() +
-                      2.0 * stages.trace[static_cast<std::size_t>(stages.best.maxCoeff())];
     // Shapes with creases move far in places.
     const double heaviness = isAlike ? tail(graph.vertices, along) : 1.0;
     const bool isEven = isTailed || heaviness < kMaxTail;

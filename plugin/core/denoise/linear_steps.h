@@ -19,7 +19,6 @@ struct LinearSteps {
     int steps = 0;          ///< Largest number of steps taken.
     Eigen::VectorXd share;  ///< n: 1 where the error is small, 0 where a filter that preserves
                             ///< creases and details does better.
-    double risk = 0.0;      ///< As that of LeastRisk, where the noise is alike everywhere.
     double rejected = 0.0;  ///< Share of the moving vertices where it is below 1.
 };
 

@@ -251,55 +251,23 @@ Removal removeAlongRays(const FaceGraph& graph, const Points& X0, const RemovalO
     return removal;
 }
 
-/// Whether what the linear steps would take is relief rather than creases: what has least risk is
-/// nearer to the truth than rounds are, by the measured risk.
-/// @param shape  n x 3 positions without noise.
-bool isRelief(const FaceGraph& graph, const Points& X0, const Points& shape,
-              const RemovalOptions& options, const Progress& progress) {
-    constexpr double kMinGain = 1.0;  // 8 and more with relief, -4 and less on machine parts
-    const SplitNoise split(X0, smoothVertexNormals(graph, shape, 1), options.noise.height);
-    RemovalOptions training = options;
-    training.noise.height *= SplitNoise::kGrowth;
-    const Points& X = split.training();
-    const Points rounds = whiteRounds(graph, X, training, kWeakRounds, progress).removal.X;
-    const Points least = withLeastRisk(graph, X, options.mayMove, training.noise.height[0]).X;
-    return split.gain(rounds, least) > kMinGain;
-}
-
 /// Linear steps in the places where they do better, rounds elsewhere.
 Followed withoutWhiteNoise(const FaceGraph& graph, const Points& X0, const RemovalOptions& options,
                            const Progress& progress) {
-    // Linear steps have -.67 and less with relief of half an edge in noise, -.45 and more where
-    // they move creases; with such relief they have .12 and more than the least risk, .073 and less
-    // on smooth shapes.
-    constexpr double kMaxRisk = -0.5, kMinRelief = 0.1;
     // Neighbours along a scan line weigh more than those across.
     const VertexGraph means =
         options.areScanLines ? weightedByLength(graph.vertices, X0, 1.0) : graph.vertices;
     const bool isAlike = options.noise.isAlike();
-    const auto shrunk = [&] {
-        LeastRisk least = withLeastRisk(graph, X0, options.mayMove, options.noise.height[0]);
-        limitDisplacement(X0, options, least.X);
-        return least;
-    };
     if (options.isUnderShape && isAlike) {
-        // The truth has -1. At most -1.24 where it helps, at least -1.28 where noise is taken for
-        // higher than it is: on square ribs, whose steps alternate as noise does.
-        constexpr double kLeastRisk = -1.26;
-        LeastRisk least = shrunk();
-        return {{std::move(least.X), 1, least.risk < kLeastRisk}, {}};
+        Removal removal{withLeastRisk(graph, X0, options.mayMove, options.noise.height[0]), 1};
+        limitDisplacement(X0, options, removal.X);
+        return {std::move(removal), {}};
     }
     LinearSteps linear =
         linearSteps(graph, means, X0, options.mayMove, options.noise, options.areImpulses);
     limitDisplacement(X0, options, linear.X);
     Followed result{{std::move(linear.X), linear.steps}, std::move(linear.N)};
     if (linear.rejected == 0.0 || options.areScanLines) return result;
-    if (isAlike && !options.areImpulses && linear.risk < kMaxRisk) {
-        LeastRisk least = shrunk();
-        if (linear.risk - least.risk > kMinRelief &&
-            isRelief(graph, X0, least.X, options, progress))
-            return {{std::move(least.X), 1}, {}};
-    }
     if (options.rays.direction.rows() > 0 && isAlike)
         return {removeAlongRays(graph, X0, options), {}};
     Followed rounds = roundsAndFlatParts(graph, X0, options, progress);

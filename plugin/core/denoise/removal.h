@@ -11,9 +11,8 @@ namespace spectral {
 
 /// Result of the removal of noise.
 struct Removal {
-    Points X;                ///< n x 3 positions.
-    int rounds = 0;          ///< Rounds of the normal filter, or linear steps.
-    bool isOfShape = false;  ///< More is removed than noise of this height can be.
+    Points X;        ///< n x 3 positions.
+    int rounds = 0;  ///< Rounds of the normal filter, or linear steps.
 };
 
 struct RemovalOptions {
@@ -31,12 +30,12 @@ struct RemovalOptions {
 /// Removes noise of known heights. Vertices move along normals only, as far as the noise can have
 /// moved them.
 ///
-/// Where the shape is as high as white noise, such as ribs, or where it has relief that linear
-/// steps would take, takes what has least risk (least_risk.h). Otherwise linear steps in the places
-/// where they do better (linear_steps.h). Elsewhere, and for correlated noise, rounds: each filters
-/// the normals of the faces, moves the vertices to follow them and rebuilds the operator from the
-/// shape. The vertices always start from the original positions: only the normals are filtered
-/// repeatedly. The limits of displacements and the times of the filter are those of each place.
+/// Where the shape is as high as white noise, such as ribs, takes what has least risk
+/// (least_risk.h). Otherwise linear steps in the places where they do better (linear_steps.h).
+/// Elsewhere, and for correlated noise, rounds: each filters the normals of the faces, moves the
+/// vertices to follow them and rebuilds the operator from the shape. The vertices always start from
+/// the original positions: only the normals are filtered repeatedly. The limits of displacements
+/// and the times of the filter are those of each place.
 ///
 /// The rounds end when the displacement is smoother than white noise (whiteness.h), or its median
 /// exceeds that of the noise: the discrepancy principle (Morozov 1966). Flat parts are then

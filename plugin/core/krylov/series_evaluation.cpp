@@ -72,11 +72,10 @@ struct GainSeries {
     double atZero;           ///< F(0).
     double mismatch;         ///< Error of the series at the samples, relative, over the surface.
     double truncated = 0.0;  ///< Requested truncation error, relative to the signals.
-    int length = kMaxNodes;  ///< Maximum number of terms that are added.
 
     double coefficient(int k) const {
         const std::vector<double>& c = series.coefficients();
-        return k < length && static_cast<std::size_t>(k) < c.size() ? c[k] : 0.0;
+        return static_cast<std::size_t>(k) < c.size() ? c[k] : 0.0;
     }
     /// Sum of the moduli of the coefficients from the k-th on.
     double tail(int k) const {
@@ -310,8 +309,7 @@ class Terms {
     int add(const std::vector<GainSeries>& series, const Errors& errors, double& largest,
             const Progress& progress) {
         const auto isLast = [&](const GainSeries& gain, int k) {
-            return k >= gain.length || gain.tail(k) == 0.0 ||
-                   errors.truncation(gain, k, largest) <= gain.truncated;
+            return gain.tail(k) == 0.0 || errors.truncation(gain, k, largest) <= gain.truncated;
         };
         int last = 1;  // as far as T_0 tells
         for (const GainSeries& gain : series)
@@ -380,29 +378,24 @@ class Terms {
     /// the one before: sums are a third of what a term reads and writes.
     /// @return  the largest entry of T_k.
     double next(int k, const std::vector<GainSeries>& series) {
-        std::vector<Sum> open;
-        for (std::size_t g = 0; g < series.size(); ++g)
-            if (k % 2 == 1 && k - 1 < series[g].length)
-                open.push_back({static_cast<Scalar>(series[g].coefficient(k - 1)),
-                                static_cast<Scalar>(series[g].coefficient(k)), sums_[g].data()});
-        switch (open.size()) {
-            case 0: return nextRows<0>(k, open);
-            case 1: return nextRows<1>(k, open);
-            case 2: return nextRows<2>(k, open);
-            default: return nextRows<kMaxGains>(k, open);
+        switch (k % 2 == 1 ? series.size() : 0) {
+            case 0: return nextRows<0>(k, series);
+            case 1: return nextRows<1>(k, series);
+            case 2: return nextRows<2>(k, series);
+            default: return nextRows<kMaxGains>(k, series);
         }
     }
 
-    /// The sum of a gain, and its coefficients of T_k-1 and T_k.
-    struct Sum {
-        Scalar ofHere, ofRow;
-        Values* rows;
-    };
-
     template <std::size_t Gains>
-    double nextRows(int k, const std::vector<Sum>& open) {
+    double nextRows(int k, const std::vector<GainSeries>& series) {
+        struct Sum {
+            Scalar ofHere, ofRow;
+            Values* rows;
+        };
         std::array<Sum, Gains> all;
-        for (std::size_t g = 0; g < Gains; ++g) all[g] = open[g];
+        for (std::size_t g = 0; g < Gains; ++g)
+            all[g] = {static_cast<Scalar>(series[g].coefficient(k - 1)),
+                      static_cast<Scalar>(series[g].coefficient(k)), sums_[g].data()};
         const auto applied = operator_.twice(newest_.data());
         const double largest = parallelMax(count_, [&](Index begin, Index end) {
             const auto twice = applied;  // copies: stores might change what others refer to
@@ -477,11 +470,6 @@ std::optional<std::vector<FullSpectrumResult>> evaluate(
         // At the vertices the bound is often reached, and steps add up: one term more, of some 12.
         found->truncated =
             options.atEveryVertex ? 0.25 * accuracy : std::max(accuracy - others, 0.5 * accuracy);
-        // Over the surface the terms' size is known: gains that need fewer are not added further.
-        if (!options.atEveryVertex)
-            while (found->length > 1 && errors.truncation(*found, found->length - 1,
-                                                          details.largest) <= found->truncated)
-                --found->length;
         series.push_back(*std::move(found));
     }
     double largest = details.largest;
@@ -500,8 +488,7 @@ std::optional<std::vector<FullSpectrumResult>> evaluate(
         laplacian.constants.add(centred.means() - laplacian.constants.means(result.Y), result.Y);
         result.dimension = length;
         result.errorEstimate =
-            errors.truncation(series[g], std::min(length, series[g].length), largest) +
-            errors.others(series[g], largest);
+            errors.truncation(series[g], length, largest) + errors.others(series[g], largest);
         result.converged = result.errorEstimate <= accuracyOf(g);
         if (!result.converged) result.errorEstimate *= kNotConverged;
     }
