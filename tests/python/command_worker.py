@@ -13,6 +13,7 @@ import atexit
 # What every command imports, at once or when it parses its options; and what draws.
 import email.message  # noqa: F401
 import gc
+import importlib.metadata  # noqa: F401
 import json
 import os
 import runpy
