@@ -118,6 +118,7 @@ def test_a_record_holds_only_numbers_that_json_can_represent() -> None:
 FOREIGN_LINES = {
     "run without a begin": '{"kind": "run", "files": 1}',
     "begin that is no time": '{"kind": "run", "begun": "today"}',
+    "begin before all times": '{"kind": "run", "begun": -1.0}',
     "begin without end": '{"kind": "run", "begun": NaN}',
     "side files in a list": '{"kind": "file", "name": "a.ply", "side_files": []}',
     "no side files": '{"kind": "file", "name": "a.ply", "side_files": null}',

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import re
 import shutil
+import time
 from pathlib import Path
 
 import numpy as np
@@ -117,9 +118,13 @@ def test_no_existing_file_is_replaced_unasked(tmp_path: Path) -> None:
     done = command(*batch, "--overwrite")
     assert done.returncode == 0, done.stderr
     assert len(arrays_of(out / paths[1].name)[0]) == 144
-    # A file that is older than the run is not one of its outputs.
-    (out / REPORT).write_text('{"kind": "run", "begun": 32503680000.0}\n')
+    # A file that is older than the first run of a report is not one of its outputs.
+    now = time.time()
+    first, last = (f'{{"kind": "run", "begun": {now + k}}}\n' for k in (-60, 60))
+    (out / REPORT).write_text(last)
     assert_fails(command(*batch, "--resume"), 2, "already exist")
+    (out / REPORT).write_text(first + last)
+    assert command(*batch, "--resume").returncode == 0
 
 
 def test_a_dry_run_lists_the_outputs_and_does_nothing(tmp_path: Path) -> None:
@@ -142,6 +147,7 @@ def test_a_dry_run_lists_the_outputs_and_does_nothing(tmp_path: Path) -> None:
         (["--order", "0"], "order"),
         (["--name", "{size}"], "{stem}"),
         (["--format", "mesh3"], "ply"),
+        (["--workers", "0"], "--workers"),
         (["--memory-limit", "much"], "4GB"),
         (["--memory-limit", "0"], "4GB"),
         (["--recipe", "none.toml"], "none.toml"),
@@ -179,11 +185,11 @@ def test_an_output_folder_that_is_a_file_is_refused(cow: Path, existing: Path) -
 
 def test_a_format_without_faces_is_written_with_a_warning(cow: Path, tmp_path: Path) -> None:
     batch = ["batch", cow, "--output", tmp_path, "--workers", 1, "--format", "xyz"]
-    for arguments in (batch, ["filter", cow, tmp_path / "one.xyz"]):
+    for arguments, ending in ((batch, "xyz"), (["filter", cow, tmp_path / "one.XYZ"], "XYZ")):
         done = command(*arguments, "--steps", 1)
         assert done.returncode == 0
-        assert "Warning: .xyz files hold only points; the faces are not written.\n" in done.stderr
-    assert sorted(contents(tmp_path)) == ["cow.xyz", "one.xyz"]
+        assert f"Warning: .{ending} files hold only points; the faces are not" in done.stderr
+    assert sorted(contents(tmp_path)) == ["cow.xyz", "one.XYZ"]
 
 
 def test_a_report_never_replaces_another_file(cow: Path, tmp_path: Path) -> None:

@@ -39,6 +39,8 @@ def test_a_size_below_the_edges_is_warned_of_as_by_the_run(more: list[str], tmp_
         done = command(*arguments, "--feature-size", "0.1%", *dry)
         words = r"feature size \S+ is below|feature size \S+, which is below"
         assert re.search(words, done.stderr)
+    edge, two = re.findall(r"edge length (\S+): choose at least two edges, (\S+)\.", done.stderr)[0]
+    assert float(two) == pytest.approx(2 * float(edge), rel=0.01)
     assert "is below" not in command(*arguments, "--dry-run").stderr
 
 

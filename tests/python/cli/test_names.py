@@ -9,6 +9,7 @@ from pathlib import Path
 import pytest
 from commands import command
 from hostile_files import CONTROL, write_hostile
+from meshlab_spectral.cli.messages import one_line
 
 NAMED = ["names.gltf", "names.3mf", "names.ply", "names.obj"]
 LONGEST = 12_000  # characters that a command prints, with tables of 200 columns
@@ -39,6 +40,11 @@ def test_the_name_of_a_file_is_escaped(tmp_path: Path) -> None:
     assert done.returncode == 1
     assert r"red\x1b[31m\n.ply" in done.stderr
     assert_plain(done)
+
+
+def test_of_a_long_message_the_begin_and_the_end_are_shown() -> None:
+    assert one_line("a" * 4000 + "b" * 1000) == "a" * 4000 + "b" * 1000
+    assert one_line("a" * 4000 + "b" * 1001) == "a" * 4000 + "b" * 100 + " ... " + "b" * 900
 
 
 @pytest.mark.parametrize("key", [CONTROL, "k" * 3_000_000])

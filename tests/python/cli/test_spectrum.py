@@ -13,7 +13,7 @@ import numpy as np
 import pymeshlab
 import pytest
 from commands import messages_in
-from helpers import lower_part, mesh_set_of
+from helpers import diagonal, lower_part, mesh_set_of
 from meshlab_spectral import FilterOptions, geometry_spectrum
 from meshlab_spectral.cli.spectrum import SHOWN_OPTIONS
 from meshlab_spectral.files.meshes import load_arrays
@@ -35,6 +35,10 @@ def test_the_plot_and_a_table_of_the_octaves_are_made(cow: Path, tmp_path: Path)
     assert done.stdout.splitlines()[-1] == "cow_spectrum.png"
     for word in ("cow.obj", "low-pass", "Amplitude", "Gain", "50, 90, 99 %", "oise"):
         assert word in done.stdout
+    rows = [line for line in done.stdout.splitlines() if line.startswith("│")]
+    cells = np.array([line.replace("│", " ").split() for line in rows], float)
+    for length, percent in (cells[:, :2].T, cells[:, 2:4].T):
+        np.testing.assert_allclose(percent, 100 * length / diagonal(load_arrays(cow)[0]), rtol=5e-3)
     picture = colours(tmp_path / "cow_spectrum.png")
     assert picture.shape[0] > 500
     assert 0.1 < (picture < 0.98).any(axis=2).mean() < 0.9

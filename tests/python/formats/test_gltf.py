@@ -102,9 +102,9 @@ def bent(vertices: NDArray[np.float64]) -> NDArray[np.float64]:
     return moved
 
 
-def moved_file(asset: Asset, tmp_path: Path) -> tuple[GltfDocument, Path]:
+def moved_file(asset: Asset, tmp_path: Path, suffix: str = ".glb") -> tuple[GltfDocument, Path]:
     """Bend all parts of an asset; check that reading the result gives the bent shapes."""
-    document, target = read(asset.write(tmp_path / "in.glb")), tmp_path / "out.glb"
+    document, target = read(asset.write(tmp_path / f"in{suffix}")), tmp_path / f"out{suffix}"
     moved = [bent(part.vertices) for part in document.parts]
     assert document.save(target, moved) == []
     for part, again, expected in zip(document.parts, read(target).parts, moved, strict=True):
@@ -213,11 +213,12 @@ def test_positions_that_are_not_plain_floats_get_a_new_accessor(kind: str, tmp_p
         asset.tree["accessors"][0]["normalized"] = True
         points = np.maximum((127 * CUBE - 10) / 127, -1)
     else:
-        rows = {"bufferView": asset.view(bytes([1, 7])), "componentType": 5121}
         values = {"bufferView": asset.view((CUBE[:2] + 5).tobytes())}
+        # The buffer ends at no multiple of 4; new floats begin at one.
+        rows = {"bufferView": asset.view(bytes([1, 7])), "componentType": 5121}
         asset.tree["accessors"][0]["sparse"] = {"count": 2, "indices": rows, "values": values}
         points[[1, 7]] = CUBE[:2] + 5
-    document, target = moved_file(asset, tmp_path)
+    document, target = moved_file(asset, tmp_path, ".gltf")
     np.testing.assert_allclose(document.parts[0].vertices, points, atol=1e-7)
     tree, blob = opened(target)
     assert blob.startswith(asset.blob)

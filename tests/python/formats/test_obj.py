@@ -12,6 +12,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from meshlab_spectral.errors import MeshFileError
+from meshlab_spectral.formats.digits import rounding_loss
 from meshlab_spectral.formats.document import Array
 from meshlab_spectral.formats.obj import read
 
@@ -125,6 +126,12 @@ def test_numbers_have_the_digits_that_the_movement_needs(tmp_path: Path) -> None
     np.testing.assert_array_equal(written, moved)
 
 
+@pytest.mark.parametrize(("share", "is_told"), [(0.009, False), (0.011, True)])
+def test_a_hundredth_of_the_movement_may_be_rounded_away(share: float, is_told: bool) -> None:
+    before, after = np.zeros((4, 3)), np.ones((4, 3))
+    assert (rounding_loss(before, after, lambda points: points + share) is not None) == is_told
+
+
 @pytest.fixture
 def textured(tmp_path: Path) -> Path:
     """A file with material libraries, whose textures are in several folders."""
@@ -169,6 +176,7 @@ def test_materials_and_textures_are_copied(textured: Path, tmp_path: Path) -> No
         (SQUARE + b"vn 0 1\n", "row 0 is 'vn 0 1'"),
         (SQUARE + b"f 1 2 3\nf 1 2 5\n", "face in line 6"),
         (SQUARE + b"f 1 2 0\n", "face in line 5"),
+        (SQUARE.replace(b"\n", b"\r\n") + b"f 1 2 0\r\n", "face in line 5"),
         (SQUARE + b"f 1 2 -5\n", "face in line 5"),
         (SQUARE + b"f 1 2 x/1/1\n", "'x'"),
         (SQUARE + b"f 1 2 99999999999999999999\n", "too large"),
