@@ -178,6 +178,7 @@ TEST(Warnings, HaveCodesOfTheirOwn) {
 TEST(Length, IsReadInAllUnits) {
     const MeshLengths mesh{200.0, 0.5, 100.0};
     EXPECT_EQ(Length::parse(" 5% ").in(mesh, 1.0), 10.0);
+    EXPECT_EQ(Length::parse("100%").in(mesh, 1.0), 200.0);
     EXPECT_EQ(Length::parse("6e").in(mesh, 1.0), 3.0);
     EXPECT_EQ(Length::parse("0.25").in(mesh, 1.0), 0.25);
     EXPECT_EQ(Length::parse("1e-3").in(mesh, 1.0), inSinglePrecision(1e-3));

@@ -105,7 +105,8 @@ TEST(CustomGain, ErrorsNameThePositionOfTheMistake) {
 TEST(CustomGain, SizesThatAreAllLargerThanTheMeshAreRefused) {
     EXPECT_TRUE(mentions(messageOf("20:1, 12:2"), "did you mean 20%:1, 12%:2?"));
     EXPECT_TRUE(mentions(messageOf("200%:1, 150%:2"), "give smaller ones"));
-    EXPECT_NO_THROW(parsed("20:1, 5:2"));
+    for (const char* const text : {"20:1, 5:2", "20:1, 100%:2"})
+        EXPECT_NO_THROW(parsed(text)) << text;
 }
 
 TEST(CustomGain, WhatIsNotReadAsMathematicsIsRejectedAtItsPosition) {
