@@ -187,6 +187,7 @@ lint: setup  ## check style and types, change nothing
 
 options: $(PACKAGE)  ## write the tables of options of the Python package as the core has them
 	$(BIN)/python python/write_options.py
+	$(MAKE) $(PACKAGE)
 
 format: setup  ## rewrite the sources in the project's style
 	$(CPP_FILES) | xargs $(BIN)/clang-format -i

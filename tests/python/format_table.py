@@ -1,11 +1,14 @@
 """Prints the table of python/docs/formats.md: what of a file is kept when it is filtered.
 
-In the environment of the project: `python tests/python/format_table.py`.
+In the environment of the project: `python tests/python/format_table.py`, with --write into the
+page.
 """
 
 from __future__ import annotations
 
 import os
+import re
+import sys
 import tempfile
 from pathlib import Path
 from typing import Any
@@ -15,6 +18,7 @@ from format_samples import SAMPLES, Sample, Seen
 from helpers import filter_file
 from meshlab_spectral import FilterOptions
 
+PAGE = Path(__file__).resolve().parents[2] / "python" / "docs" / "formats.md"
 SMOOTH = FilterOptions.from_dict({"feature_size": "15%"})
 KINDS = {
     "coordinates": "coordinates",
@@ -95,4 +99,9 @@ def _common(kind: str, found: list[dict[str, str]]) -> str:
 if __name__ == "__main__":
     with os.fdopen(os.dup(1), "w") as output:
         os.dup2(2, 1)  # MeshLab's log
-        print(table(), file=output)
+        rows = table()
+        if "--write" in sys.argv:
+            page = PAGE.read_text()
+            PAGE.write_text(re.sub(r"(?m)^\| content \|.*(\n\|.*)*", lambda _: rows, page))
+        else:
+            print(rows, file=output)

@@ -19,7 +19,7 @@ std::string fractionalText(const FilterOptions& options, const FilterResult& res
                            double diagonal, const std::string& subject = {},
                            const std::string& deed = {});
 
-/// Shortcomings of a result, and what to choose instead.
+/// Shortcomings of a result, of the equalizer's, too, and what to choose instead.
 Warnings fractionalWarnings(const FilterOptions& options, const FilterResult& result,
                             double diagonal);
 

@@ -125,7 +125,8 @@ Call callOf(const Fields<Call>& fields, const Values& given, const MeshLengths& 
     return call;
 }
 
-/// Warnings about parameters that are not at their defaults but have no effect with the others.
+/// Warnings about parameters that are not at their defaults but have no effect with the others:
+/// "order has no effect without response = butterworth".
 template <class Call>
 Warnings unusedWarnings(const Fields<Call>& fields, const Call& call) {
     Warnings warnings;

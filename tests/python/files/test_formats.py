@@ -8,11 +8,12 @@ import numpy as np
 import pytest
 import pyvista
 from format_samples import RGB, SAMPLES, Array, Sample
-from format_table import SMOOTH, compared, outcomes, table
+from format_table import PAGE, SMOOTH, compared, outcomes, table
 from helpers import filter_file
+from meshlab_spectral.formats.names import ending_of
+from meshlab_spectral.formats.table import FORMATS
 from plyfile import PlyData
 
-PAGE = Path(__file__).resolve().parents[3] / "python" / "docs" / "formats.md"
 BY_NAME = {sample.name: sample for sample in SAMPLES}
 CONVERSIONS = [
     (name, ending)
@@ -26,6 +27,11 @@ PLY_NAMES = {"colours": "red green blue", "normals": "nx ny nz", "texture": "tex
 @pytest.mark.parametrize("sample", SAMPLES, ids=[sample.name for sample in SAMPLES])
 def test_nothing_is_lost_in_a_file_that_stays_in_its_format(sample: Sample, tmp_path: Path) -> None:
     assert "LOST" not in outcomes(sample, tmp_path).values()
+
+
+def test_every_format_has_a_sample() -> None:
+    have = {FORMATS[ending].module for ending in map(ending_of, BY_NAME) if ending in FORMATS}
+    assert have | {"usd"} == {one.module for one in FORMATS.values() if one.is_patched}
 
 
 def test_a_loss_appears_in_the_table(tmp_path: Path) -> None:

@@ -19,8 +19,8 @@ from meshlab_spectral.other_words import instead_of
 
 Command = Callable[..., None]
 
-# The groups of --help and their options; all other options are under "Options", or in the group
-# named by `rich_help_panel`.
+# The groups of --help and their options; all other options are in the group named by
+# `rich_help_panel` (those of the core: "Solver"), or under "Options".
 SOLVER, DENOISE = "Solver", "With --denoise"
 _GROUPS = {
     "Filter": """preset equalizer recipe script denoise only filter_type feature_size pass_gain
