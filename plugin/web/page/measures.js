@@ -10,7 +10,8 @@ export function sizesOf(V, F) {
   let sum = 0;
   for (let i = 0; i < F.length; i++) {
     const a = 3 * F[i], b = 3 * F[i % 3 === 2 ? i - 2 : i + 1];
-    sum += Math.hypot(V[a] - V[b], V[a + 1] - V[b + 1], V[a + 2] - V[b + 2]);
+    const x = V[a] - V[b], y = V[a + 1] - V[b + 1], z = V[a + 2] - V[b + 2];
+    sum += Math.sqrt(x * x + y * y + z * z);  // Math.hypot takes five times as long
   }
   return {diagonal: Math.hypot(...low.map((x, k) => high[k] - x)), meanEdge: sum / F.length};
 }

@@ -62,7 +62,7 @@ export class View {
     this.middle = low.map((x, k) => (x + high[k]) / 2);
     this.size = Math.hypot(...low.map((x, k) => high[k] - x)) / 2 || 1;
     gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, this.corners);
-    gl.bufferData(gl.ELEMENT_ARRAY_BUFFER, new Uint32Array(F), gl.STATIC_DRAW);
+    gl.bufferData(gl.ELEMENT_ARRAY_BUFFER, F, gl.STATIC_DRAW);
     this.count = F.length;
     this.zoom = 1;
     this.shift = [0, 0];

@@ -55,8 +55,10 @@ function readElements(header, reader, mesh) {
   for (const {name, count, properties} of header.elements) {
     const isVertex = name === 'vertex', isFace = name === 'face' || name === 'tristrips';
     const columns = properties.map((one) => (isVertex ? mesh.columns.indexOf(one.name) : -1));
+    const hasCorners = properties.map((one) => isFace && /^vertex_ind(ex|ices)$/.test(one.name));
     for (let i = 0; i < count; i++)
-      for (const [k, {name: property, type, sizeType}] of properties.entries()) {
+      for (let k = 0; k < properties.length; k++) {
+        const {type, sizeType} = properties[k];
         if (!sizeType) {
           const number = reader.next(type);
           if (columns[k] >= 0) {
@@ -69,7 +71,7 @@ function readElements(header, reader, mesh) {
         }
         const list = [];
         for (let left = reader.next(sizeType); left > 0; left--) list.push(reader.next(type));
-        if (!isFace || !/^vertex_ind(ex|ices)$/.test(property)) continue;
+        if (!hasCorners[k]) continue;
         if (name === 'face') addPolygon(list, mesh.F);
         else addStrips(list, mesh.F);
       }
