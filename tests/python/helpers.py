@@ -9,7 +9,7 @@ import numpy as np
 import pymeshlab
 import pytest
 from meshlab_spectral._core import filters
-from meshlab_spectral.files.meshes import filter_to_scratch
+from meshlab_spectral.files.filtering import filter_to_scratch
 from meshlab_spectral.files.whole_files import writing_whole
 from meshlab_spectral.filters.option_types import Options
 from numpy.typing import NDArray

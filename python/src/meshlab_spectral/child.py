@@ -23,15 +23,14 @@ from typing import Any
 from meshlab_spectral import _core, errors
 from meshlab_spectral.files.basis import basis_to_scratch
 from meshlab_spectral.files.comparison import compare
-from meshlab_spectral.files.info import mesh_info
-from meshlab_spectral.files.intent import intent_of
-from meshlab_spectral.files.meshes import (
-    StageCallback,
+from meshlab_spectral.files.filtering import (
     filter_to_scratch,
     joined_to_scratches,
-    load_arrays,
     script_to_scratch,
 )
+from meshlab_spectral.files.info import mesh_info
+from meshlab_spectral.files.intent import intent_of
+from meshlab_spectral.files.meshes import StageCallback, load_arrays
 from meshlab_spectral.files.region import Region
 from meshlab_spectral.files.texture import texture_of
 from meshlab_spectral.files.whole_files import file_trouble, is_disk_full

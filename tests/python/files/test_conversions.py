@@ -16,7 +16,8 @@ import pyvista
 from helpers import filter_file
 from meshlab_spectral import DenoiseOptions, FilterOptions
 from meshlab_spectral.errors import FormatError
-from meshlab_spectral.files.meshes import load_arrays, script_to_scratch
+from meshlab_spectral.files.filtering import script_to_scratch
+from meshlab_spectral.files.meshes import load_arrays
 from meshlab_spectral.files.whole_files import writing_whole
 from numpy.typing import NDArray
 from plyfile import PlyData, PlyElement

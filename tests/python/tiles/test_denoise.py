@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from meshlab_spectral import DenoiseOptions
 from meshlab_spectral.errors import UntiledError
-from meshlab_spectral.files.meshes import filter_to_scratch
+from meshlab_spectral.files.filtering import filter_to_scratch
 from meshlab_spectral.formats import ply
 from meshlab_spectral.formats.opening import open_rows
 from meshlab_spectral.tiles.cells import near_cells, split

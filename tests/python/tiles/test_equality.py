@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 from meshlab_spectral import FilterOptions
-from meshlab_spectral.files.meshes import filter_to_scratch
+from meshlab_spectral.files.filtering import filter_to_scratch
 from meshlab_spectral.formats import ply, stl
 from meshlab_spectral.tiles.run import filter_in_tiles
 from tiled_meshes import bumpy_torus, shuffled, write_ply, write_stl

@@ -9,13 +9,8 @@ import numpy as np
 
 from meshlab_spectral.errors import OptionError
 from meshlab_spectral.files.extensions import is_same_format
-from meshlab_spectral.files.meshes import (
-    StageCallback,
-    load_parts,
-    require_one_choice,
-    wanted_attribute,
-    whole_of,
-)
+from meshlab_spectral.files.filtering import require_one_choice, wanted_attribute
+from meshlab_spectral.files.meshes import StageCallback, load_parts, whole_of
 from meshlab_spectral.files.meshlab_files import check_writable
 from meshlab_spectral.files.region import Region
 from meshlab_spectral.files.region_vertices import chosen_parts
