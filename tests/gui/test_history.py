@@ -11,8 +11,7 @@ from desktop import Desktop
 from filter_dialog import FilterDialog
 from fractional import MENU, PARAMETERS, assert_same_in_floats, load, vertices
 from meshlab import MeshLab
-from test_layers import STEPS, layer
-from waiting import wait_for
+from test_layers import STEPS, layer, stop
 
 
 def opened(meshlab: MeshLab, **values: str) -> FilterDialog:
@@ -23,17 +22,6 @@ def opened(meshlab: MeshLab, **values: str) -> FilterDialog:
     for name, value in {"steps": "1", **values}.items():
         dialog.set_value(rows[name], value)
     return dialog
-
-
-def stop(meshlab: MeshLab, desktop: Desktop, dialog: FilterDialog) -> None:
-    """Apply, and press Esc during the run."""
-    bar = meshlab.main_window().find("progress bar")
-    assert bar is not None
-    dialog.press("Apply")
-    wait_for("the filter to be at work", lambda: bar.value >= 1)
-    desktop.press_keys("Escape")
-    assert "stopped: the mesh is as it was" in meshlab.message("Filter Failure")
-    dialog.close()
 
 
 def test_the_script_of_ten_actions_gives_the_mesh_on_the_screen(

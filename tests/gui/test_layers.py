@@ -25,6 +25,17 @@ def layer(meshlab: MeshLab, name: str) -> Widget:
     return next(item for item in items if item.name.removesuffix(" *") == name)
 
 
+def stop(meshlab: MeshLab, desktop: Desktop, dialog: FilterDialog) -> None:
+    """Apply, and press Esc during the run."""
+    bar = meshlab.main_window().find("progress bar")
+    assert bar is not None
+    dialog.press("Apply")
+    wait_for("the filter to be at work", lambda: bar.value >= 1)
+    desktop.press_keys("Escape")
+    assert "stopped: the mesh is as it was" in meshlab.message("Filter Failure")
+    dialog.close()
+
+
 def is_on_screen(box: Box) -> bool:
     return box.x + box.width <= 1600 and box.y + box.height <= 1000
 
@@ -67,13 +78,7 @@ def test_escape_during_apply_with_a_preview_leaves_no_entry_in_the_history(
     dialog.set_value(rows["keep_original"], "true")  # Apply is then a run of its own
     dialog.set_value(rows["steps"], str(STEPS))
     dialog.preview(True)
-    bar = meshlab.main_window().find("progress bar")
-    assert bar is not None
-    dialog.press("Apply")
-    wait_for("the filter to be at work", lambda: bar.value >= 1)
-    desktop.press_keys("Escape")
-    assert "stopped: the mesh is as it was" in meshlab.message("Filter Failure")
-    dialog.close()
+    stop(meshlab, desktop, dialog)
     assert_unchanged(meshlab, bunny)
     assert_nothing_in_the_history(meshlab)
 

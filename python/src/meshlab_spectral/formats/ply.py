@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-import io
 import os
 import re
 import warnings
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import IO, Any
 
@@ -15,19 +14,8 @@ import numpy as np
 from numpy.typing import NDArray
 from plyfile import PlyData, PlyElement, PlyListProperty, PlyParseError
 
-from meshlab_spectral._core import binary_numbers
-from meshlab_spectral.formats.causes import (
-    EndsEarlyError,
-    ForeignError,
-    MayEndEarlyError,
-    unreadable,
-    unsupported,
-)
-from meshlab_spectral.formats.digits import (
-    digits_for,
-    rounding_loss,
-    widening_warnings,
-)
+from meshlab_spectral.formats.causes import unreadable, unsupported
+from meshlab_spectral.formats.digits import digits_for, rounding_loss, widening_warnings
 from meshlab_spectral.formats.document import (
     Array,
     Document,
@@ -38,16 +26,11 @@ from meshlab_spectral.formats.document import (
 )
 from meshlab_spectral.formats.names import shown
 from meshlab_spectral.formats.normals import following_normals
+from meshlab_spectral.formats.ply_elements import Table, read_elements, read_header, row_type
 from meshlab_spectral.formats.polygons import strip_triangles, triangles
 from meshlab_spectral.formats.rows import Rows
 from meshlab_spectral.formats.side_files import copy_side_files
-from meshlab_spectral.formats.text import (
-    BYTE_ORDER_MARK,
-    Lines,
-    as_integers,
-    lines_of,
-    write_patched,
-)
+from meshlab_spectral.formats.text import as_integers, write_patched
 from meshlab_spectral.warned import Warned
 
 AXES, NORMALS = ("x", "y", "z"), ("nx", "ny", "nz")
@@ -60,13 +43,7 @@ _KNOWN = {
     "texture coordinates": {"s", "t", "u", "v", "texture_u", "texture_v", "texcoord", "texnumber"},
     "quality": {"quality"},
 }
-_LARGEST_CUT = 1000  # largest ratio of what a file claims to hold to what it holds, as of STL
 _SELECTED = 0x20  # VCG's flag
-# Elements, or properties: Gaussian splats have 62, with learned features some 1,000. The time of
-# plyfile grows with their square.
-_MOST_NAMES = 10_000
-_LONGEST_SIZE = 12  # characters of the size of a list, of at most 32 bits, and a blank
-_Table = dict[str, Any]  # the numbers of a property; for lists their sizes, and all items
 _Changes = dict[tuple[str, ...], tuple[Array, Array]]  # before and after
 Columns = dict[tuple[str, ...], tuple[Indices | slice, Array]]  # in which rows, and what
 
@@ -169,7 +146,7 @@ def read(path: Path) -> PlyDocument:
         with warnings.catch_warnings(), np.errstate(all="ignore"):
             warnings.simplefilter("ignore")  # about empty lists and non-integers
             ply, counts, header = read_header(content)
-            tables, rows, begin = _read_rows(content, ply, counts, len(header))
+            tables, rows, begin = read_elements(content, ply, counts, len(header))
             vertex = tables["vertex"]
             _check_vertices(path, ply, vertex)
             vertices = _columns(vertex, *AXES)
@@ -205,155 +182,19 @@ def read(path: Path) -> PlyDocument:
     )
 
 
-def read_header(content: bytes) -> tuple[PlyData, dict[str, int], bytes]:
-    """Read the header with plyfile, without comments (it accepts only ASCII), with counts of 0."""
-    if not content.removeprefix(BYTE_ORDER_MARK).startswith(b"ply"):
-        raise ForeignError("it does not begin with the word ply")
-    end = re.search(rb"\n[ \t]*end_header[ \t]*\r?\n", content)
-    if not end:
-        raise EndsEarlyError("it ends before the end of its header")
-    header = content[: end.end()]
-    lines = b"".join(
-        line.strip() + b"\n" for line in header.removeprefix(BYTE_ORDER_MARK).splitlines()
-    )
-    lines = re.sub(rb"(?m)^(comment|obj_info)\b.*", b"comment", lines)
-    counts = [int(word) for word in re.findall(rb"(?m)^element\s+\S+\s+(\S+)", lines)]
-    properties = len(re.findall(rb"(?m)^property\b", lines))
-    if max(len(counts), properties) > _MOST_NAMES:
-        raise ValueError(
-            f"it has {len(counts)} elements and {properties} properties, of {_MOST_NAMES} at most"
-        )
-    empty = re.sub(rb"(?m)^(element\s+\S+)\s+\S+", rb"\1 0", lines)
-    ply = PlyData.read(io.BytesIO(empty))
-    if "vertex" not in ply:
-        raise ValueError("it has no PLY header with vertices")
-    return ply, dict(zip([one.name for one in ply], counts, strict=True)), header
-
-
-def _read_rows(
-    content: bytes, ply: PlyData, counts: dict[str, int], start: int
-) -> tuple[dict[str, _Table], Indices, int]:
-    """Read all elements; return the byte offsets of text vertices, and that of binary ones, too."""
-    if any(not 0 <= count <= len(content) for count in counts.values()):
-        is_short = 0 <= min(counts.values()) <= max(counts.values()) < _LARGEST_CUT * len(content)
-        reason = f"it cannot have {', '.join(map(str, counts.values()))} rows"
-        raise MayEndEarlyError(reason) if is_short else ValueError(reason)
-    lines = lines_of(content, begin=start, limit=sum(counts.values()) if ply.text else 0)
-    try:
-        return _read_elements(content, ply, counts, start, lines)
-    except ValueError:
-        if not ply.text or (rows := _rows_in_any_lines(lines, ply, counts, start)) is None:
-            raise
-        return _read_elements(content, ply, counts, start, rows)
-
-
-def _rows_in_any_lines(
-    lines: Lines, ply: PlyData, counts: dict[str, int], start: int
-) -> Lines | None:
-    """Return the rows of all elements by their words; None if any are missing or left over."""
-    text = np.frombuffer(lines.text, np.uint8)[start:]
-    is_blank = np.isin(text, np.frombuffer(b" \t\n\r\v\f", np.uint8))
-    found = start + np.flatnonzero(~is_blank & np.append(True, is_blank[:-1]))
-    del is_blank
-    first, words, at = list[Indices](), list[Indices](), 0
-    try:
-        for element in ply:
-            are_lists = [isinstance(one, PlyListProperty) for one in element.properties]
-            count = counts[element.name]
-            if not any(are_lists):
-                sizes = np.full(count, len(are_lists))
-            else:
-                rows = _sizes_of_rows(lines.text, found, at, are_lists, count)
-                sizes = np.array(rows, np.int64)
-            first.append(found[at + np.cumsum(sizes) - sizes])
-            words.append(sizes.astype(np.int32))
-            at += int(sizes.sum())
-    except (ValueError, IndexError):
-        return None
-    if at != len(found):
-        return None
-    kinds = np.zeros(sum(map(len, words)), np.uint8)
-    return replace(lines, starts=np.concatenate(first), words=np.concatenate(words), kinds=kinds)
-
-
-def _sizes_of_rows(
-    text: bytes, found: Indices, at: int, are_lists: Sequence[bool], count: int
-) -> list[int]:
-    """Return how many words each of an element's rows has, the first of which is word `at`."""
-    sizes = list[int]()
-    for _ in range(count):
-        begin = at
-        for is_list in are_lists:
-            if is_list:
-                start = int(found[at])
-                at += max(0, int(text[start : start + _LONGEST_SIZE].split(maxsplit=1)[0]))
-            at += 1
-        sizes.append(at - begin)
-    return sizes
-
-
-def _read_elements(
-    content: bytes, ply: PlyData, counts: dict[str, int], start: int, lines: Lines
-) -> tuple[dict[str, _Table], Indices, int]:
-    """Read all elements from the lines of a text, or from a binary file."""
-    tables, begin, at = dict[str, _Table](), 0, 0
-    starts = lines.starts[:0]
-    for element in ply:
-        count, properties = counts[element.name], element.properties
-        own = lines[at : at + count]
-        if element.name == "vertex":
-            starts, begin = own.starts, start
-        if ply.text:
-            are_lists = [isinstance(one, PlyListProperty) for one in properties]
-            found, at = own.table(are_lists, is_whole=True), at + count
-        else:
-            types = [(getattr(one, "len_dtype", ""), one.val_dtype) for one in properties]
-            is_big = ply.byte_order == ">"
-            found, start = binary_numbers(content, start, count, types, is_big)
-        numbers, lists, bad, column = found
-        if ply.text and bad >= 0:
-            reasons = [f"property {one.name!r}: missing or malformed" for one in properties]
-            reason = [*reasons, "expected end-of-line"][column]
-            row = b" ".join(own.words_of(bad)).decode(errors="replace")[:80]
-            raise own.fault(bad, f"element {element.name!r}: row {bad}: {reason}, in {row!r}")
-        if bad >= 0 or (ply.text and len(own) < count):
-            has_lists = not ply.text and any(types_[0] for types_ in types)
-            raise (MayEndEarlyError if has_lists else EndsEarlyError)(
-                f"it ends in element {element.name!r}, which has {count} rows"
-            )
-        single, several = iter(numbers.T), iter(lists)
-        tables[element.name] = {
-            one.name: next(several if isinstance(one, PlyListProperty) else single)
-            for one in properties
-        }
-    return tables, starts, begin
-
-
-def _sizes(table: _Table) -> dict[str, int]:
+def _sizes(table: Table) -> dict[str, int]:
     """Return how many items the lists of each property have in the first row, at least."""
     lists = {name: one[0] for name, one in table.items() if isinstance(one, tuple)}
     return {name: int(sizes[0]) if len(sizes) else 0 for name, sizes in lists.items()}
 
 
-def _first_word(table: _Table, name: str) -> int:
+def _first_word(table: Table, name: str) -> int:
     """Return how many words text rows have before a number; their lists have the same size."""
     before = list(table)[: list(table).index(name)] if name in table else []
     return len(before) + sum(_sizes(table).get(one, 0) for one in before)
 
 
-def row_type(element: PlyElement, order: str, size_of: Callable[[Any], int]) -> np.dtype[Any]:
-    """Return the type of binary rows; `size_of` a list, given the fields up to its size."""
-    fields = list[Any]()
-    for one in element.properties:
-        shape: tuple[int, ...] = ()
-        if isinstance(one, PlyListProperty):
-            fields.append((f"{one.name}\n", order + one.len_dtype))
-            shape = (size_of(fields),)
-        fields.append((one.name, order + one.val_dtype, shape))
-    return np.dtype(fields)
-
-
-def _check_vertices(path: Path, ply: PlyData, table: _Table) -> None:
+def _check_vertices(path: Path, ply: PlyData, table: Table) -> None:
     names = " ".join(["", *table, ""])
     is_apart = " x y z " not in names or (" nx " in names and " nx ny nz " not in names)
     if (ply.text and (is_apart or _is_uneven(table, before="x"))) or not _has_numbers(
@@ -363,7 +204,7 @@ def _check_vertices(path: Path, ply: PlyData, table: _Table) -> None:
         raise unsupported(path, what, "export it again with x, y and z as the first properties")
 
 
-def _is_uneven(table: _Table, before: str | None = None) -> bool:
+def _is_uneven(table: Table, before: str | None = None) -> bool:
     """Whether lists have several lengths, of those before the last of coordinates and normals."""
     names = list(table)
     if before is not None:
@@ -372,7 +213,7 @@ def _is_uneven(table: _Table, before: str | None = None) -> bool:
     return any((one != one[0]).any() for one in sizes.values() if len(one))
 
 
-def _places(ply: PlyData, table: _Table, begin: int) -> dict[str, Indices]:
+def _places(ply: PlyData, table: Table, begin: int) -> dict[str, Indices]:
     """Return the byte offsets of the numbers of binary vertices."""
     within, places = np.zeros(len(table["x"]), np.int64), dict[str, Indices]()
     for one in ply["vertex"].properties:
@@ -401,17 +242,17 @@ def _has_numbers(element: PlyElement) -> bool:
     return len(axes) == 3 and not any(isinstance(one, PlyListProperty) for one in axes)
 
 
-def _columns(table: _Table, *names: str) -> Array:
+def _columns(table: Table, *names: str) -> Array:
     return np.column_stack([table[name] for name in names])
 
 
-def _corners(table: _Table) -> tuple[Indices, Indices] | None:
+def _corners(table: Table) -> tuple[Indices, Indices] | None:
     """Return the corners of all faces or strips, and how many each has; None if there are none."""
     found = [table[name] for name in CORNERS if name in table]
     return (as_integers(found[0][1]), found[0][0]) if found and len(found[0][0]) else None
 
 
-def _read_faces(tables: dict[str, _Table], vertices: Array) -> Indices:
+def _read_faces(tables: dict[str, Table], vertices: Array) -> Indices:
     if faces := _corners(tables.get("face", {})):
         return triangles(*faces, vertices)
     if strips := _corners(tables.get("tristrips", {})):
@@ -419,7 +260,7 @@ def _read_faces(tables: dict[str, _Table], vertices: Array) -> Indices:
     return np.zeros((0, 3), np.int64)
 
 
-def _selected(tables: dict[str, _Table], count: int) -> NDArray[np.bool_] | None:
+def _selected(tables: dict[str, Table], count: int) -> NDArray[np.bool_] | None:
     """Return which vertices MeshLab's flags select, directly or by a face; None if none."""
     chosen = np.zeros(count, bool)
     if "flags" in tables["vertex"]:

@@ -20,11 +20,10 @@ from meshlab_spectral.formats.ply import (
     has_floats,
     is_selected,
     quality_of,
-    read_header,
-    row_type,
     widened,
     with_columns,
 )
+from meshlab_spectral.formats.ply_elements import read_header, row_type
 from meshlab_spectral.formats.rows import Between, MeshRows, Rows, forget
 
 _HEAD = 1 << 20  # bytes in which a header ends
