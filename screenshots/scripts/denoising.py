@@ -12,7 +12,8 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
-from bench_denoise import METHODS, Pair
+from bench_denoise import Pair
+from denoising_methods import METHODS
 from figure_numbers import Drawing, MeshFile, Numbers
 from meshlab_spectral import denoise_mesh
 from meshlab_spectral.figures.pictures import Image, Panel, View

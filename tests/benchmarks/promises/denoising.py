@@ -8,7 +8,8 @@ from functools import partial
 
 import meshlab_spectral
 import numpy as np
-from bench_denoise import ESTIMATED, GROUPS, METHODS, CleanRow, Pair, clean_rows, noise_of
+from bench_denoise import ESTIMATED, GROUPS, CleanRow, Pair, clean_rows, noise_of
+from denoising_methods import METHODS
 from meshlab_spectral.filters.arrays import mean_edge
 
 from promises.meshes import loaded

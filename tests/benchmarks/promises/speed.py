@@ -15,7 +15,7 @@ from typing import Any
 
 import meshlab_spectral
 from bench_defaults import LARGE, measured
-from bench_denoise import METHODS
+from denoising_methods import METHODS
 
 from promises.meshes import data_meshes, loaded
 from promises.record import Found, Promise, at_most, largest, promise, shared
