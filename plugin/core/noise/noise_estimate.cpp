@@ -10,6 +10,7 @@
 #include "core/graph/diffusion.h"
 #include "core/graph/local_average.h"
 #include "core/graph/robust_statistics.h"
+#include "core/noise/least_height.h"
 
 namespace spectral {
 
@@ -371,7 +372,9 @@ NoiseEstimate estimateNoise(const FaceGraph& graph, const Points& X, const Point
     if (estimate.isUnderShape || !isLong) {
         estimate.size = 1.0;
         // A shape adds to both; creases more to the second residuals.
-        estimate.height = estimate.isUnderShape ? second.height : std::min(second.height, noise[0]);
+        estimate.height = estimate.isUnderShape
+                              ? leastHeight(graph, X, N, isMeasured, second.height)
+                              : std::min(second.height, noise[0]);
         if (isShort) estimate.height = std::min(estimate.height, lowest);
     }
     // Of second residuals along crests: at least -.22 on clean ribs of six edges, which fall, and
