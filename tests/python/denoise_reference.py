@@ -168,18 +168,13 @@ class Reference:
         return unit(filtered)
 
     def followed(self, X: Array, N: Array, sweeps: int) -> Array:
-        corners = X[self.F]
-        sides = np.linalg.norm(corners - np.roll(corners, 1, axis=1), axis=2)
-        altitude = np.linalg.norm(self.area_normals(X), axis=1) / sides.max(axis=1)
-        distance = np.linalg.norm(corners.mean(axis=1, keepdims=True) - corners, axis=2)
-        weight = np.minimum(0.0625, (altitude[:, None] / distance) ** 2)
-        weights = np.bincount(self.F.ravel(), weight.ravel())
+        faces = self.incidence.sum(axis=1)
         for _ in range(sweeps):
             pull = np.zeros_like(X)
             for k in range(3):
                 away = (N * (X[self.F].mean(axis=1) - X[self.F[:, k]])).sum(axis=1)
-                np.add.at(pull, self.F[:, k], N * (weight[:, k] * away)[:, None])
-            X = X + pull / weights[:, None]
+                np.add.at(pull, self.F[:, k], N * away[:, None])
+            X = X + pull / faces[:, None]
         return X
 
     def unfolded(self, X: Array, N: Array, farthest: float) -> Array:

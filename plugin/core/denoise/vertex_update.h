@@ -8,14 +8,10 @@ namespace spectral {
 
 /// Moves the vertices to make the faces match given normals as far as possible:
 ///
-///     x_i <- x_i + sum_{f in F_i} w_if n_f n_f^T (c_f - x_i) / sum_{f in F_i} w_if,
+///     x_i <- x_i + sum_{f in F_i} n_f n_f^T (c_f - x_i) / |F_i|,
 ///
 /// where c_f is the centroid of face f (Sun, Rosin, Martin, Langbein 2007, Eq. 14). Vertices move
 /// only along normals, so that triangles do not drift within the surface.
-///
-/// Noise tilts a face by its height over the least altitude a_f of the face, and a tilt moves a
-/// vertex by that times its distance: w_if is the inverse of the variance, a_f^2 / |c_f - x_i|^2,
-/// for long triangles, whose far ends are hardly heard, and alike for all others.
 ///
 /// @param X        n x 3 positions.
 /// @param N        m x 3 unit normals.

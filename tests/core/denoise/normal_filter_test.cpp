@@ -116,19 +116,5 @@ TEST(VertexUpdate, FlattensAPlaneWithoutDrift) {
               0.2 * testing::meanAngle(bumpy, mesh.V, mesh.F));
 }
 
-TEST(VertexUpdate, HardlyHearsTheFarEndsOfLongTriangles) {
-    Mesh mesh = testing::rectangle(1, 1, 12, 12);
-    for (Index i = 0; i < mesh.V.rows(); ++i)
-        if (mesh.V(i, 0) > 0.99) mesh.V(i, 0) = 10.0;
-    Points N = faceNormals(mesh.V, mesh.F);
-    std::vector<bool> isShort(mesh.V.rows());
-    for (Index i = 0; i < mesh.V.rows(); ++i) isShort[i] = mesh.V(i, 0) < 1.0;
-    for (Index f = 0; f < N.rows(); ++f)
-        for (int c = 0; c < 3; ++c)
-            if (!isShort[mesh.F(f, c)]) N.row(f) = Eigen::RowVector3d(-0.05, 0.0, 1.0).normalized();
-    const Vertices X = followNormals(faceGraph(mesh.F, mesh.V.rows()), mesh.V, N, isShort, 50);
-    EXPECT_LT((X - mesh.V).cwiseAbs().maxCoeff(), 1.0 / 36) << "a third of a short edge";
-}
-
 }  // namespace
 }  // namespace spectral
