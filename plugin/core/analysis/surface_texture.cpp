@@ -84,7 +84,7 @@ std::vector<bool> coarseVertices(const Vertices& X, const Faces& F, double cutof
 std::vector<EdgeVertices> creasesOf(const Vertices& X, const Faces& F, const Eigen::VectorXd& bend,
                                     double cutoff, double angle) {
     if (angle >= 180.0) return {};
-    std::vector<EdgeVertices> edges = creaseEdges(X, F, angle);
+    std::vector<EdgeVertices> edges = creaseEdges(X, F, SidesByEdge(F), angle);
     const std::vector<bool> isCoarse = coarseVertices(X, F, cutoff);
     const double sigma = std::sqrt(std::log(2.0) / 2.0) / kPi * cutoff;
     const double least = std::sin(0.5 * angle * kPi / 180.0) * std::sqrt(2.0 / kPi) * sigma *

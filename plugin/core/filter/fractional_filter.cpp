@@ -187,7 +187,8 @@ FilterResult fractionalFilter(const Vertices& V, const Faces& F, const FilterOpt
     FilterOptions options = given;
     if (options.tolerance == 0.0) options.tolerance = defaultTolerance(lengthsOf(V, F));
     checkOptions(options);
-    Surface surface = joinedSurface(V, F);
+    auto [surface, sides] = joinedSurfaceWithEdges(V, F);
+    std::optional<SidesByEdge> edges = std::move(sides);
     const TransferFunction transfer(options.transferFunction, cutoffFrequency(options.featureSize));
     const std::vector<bool> isFixed = fixedVerticesOf(surface, options);
     keepFixed(isFixed, surface);
@@ -195,7 +196,11 @@ FilterResult fractionalFilter(const Vertices& V, const Faces& F, const FilterOpt
 
     std::optional<LaplacianBuilder> laplacians(std::in_place, surface, interior.surfaceComponents(),
                                                options.laplacian, options.basisUpdate,
-                                               options.conformalShare);
+                                               options.conformalShare, &*edges);
+    std::vector<bool> alongEdges;
+    if (options.creaseAngle == 0.0 && !options.whole)
+        alongEdges = alongSharpEdges(surface.X, surface.F, *edges);
+    edges.reset();  // 72 bytes a vertex, which the terms of the steps need
     const double edge = meanEdgeLength(surface.X, surface.F),
                  meanEdge = options.whole ? options.whole->meanEdge : edge;
     const EvaluationOptions evaluation = evaluationFor(options, surface, meanEdge);
@@ -237,8 +242,7 @@ FilterResult fractionalFilter(const Vertices& V, const Faces& F, const FilterOpt
     static_cast<Movement&>(result) =
         movementOf(surface.X, surface.F, displacement, before, volumes);
     result.limitedShare = limited;
-    if (options.creaseAngle == 0.0 && !options.whole)
-        result.roundedCreases = roundedCreases(surface.X, surface.F, displacement);
+    if (!alongEdges.empty()) result.roundedCreases = roundedCreases(alongEdges, displacement);
     static_cast<Work&>(result) = evaluate.work();
     result.V = moved(V, surface, displacement);
     result.maxDisplacement = std::max(result.maxDisplacement, largestAtSeams(V, result.V, surface));

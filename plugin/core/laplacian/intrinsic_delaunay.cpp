@@ -7,7 +7,6 @@
 #include <numeric>
 #include <utility>
 
-#include "core/mesh/sides.h"
 #include "core/support/threads.h"
 
 namespace spectral {
@@ -22,9 +21,9 @@ namespace {
 constexpr double kMollification = 1e-5, kShareOfNeedle = 0.1, kPoint = 1e-7;
 
 /// Sorts the sides of one edge by the angles of their triangles around it.
-void sortByAngle(const Vertices& V, const Faces& F, Side* first, Side* last) {
-    const Eigen::RowVector3d origin = V.row(first->low);
-    const Eigen::RowVector3d axis = (V.row(first->high) - origin).normalized();
+void sortByAngle(const Vertices& V, const Faces& F, std::vector<Side>& sides) {
+    const Eigen::RowVector3d origin = V.row(sides.front().low);
+    const Eigen::RowVector3d axis = (V.row(sides.front().high) - origin).normalized();
     const Eigen::RowVector3d right = axis.unitOrthogonal(), up = axis.cross(right);
     const auto angle = [&](const Side& s) {
         const Eigen::RowVector3d spoke = V.row(F(s.face(), s.opposite())) - origin;
@@ -38,7 +37,7 @@ void sortByAngle(const Vertices& V, const Faces& F, Side* first, Side* last) {
         const bool againstNormal = s.low < opposite && opposite < s.high;
         return againstNormal ? -s.number : s.number;
     };
-    std::sort(first, last, [&](const Side& a, const Side& b) {
+    std::sort(sides.begin(), sides.end(), [&](const Side& a, const Side& b) {
         return std::pair(angle(a), layer(a)) < std::pair(angle(b), layer(b));
     });
 }
@@ -110,8 +109,8 @@ SparseMatrix stiffnessOf(const IntrinsicTriangulation& triangulation, int copies
 
 }  // namespace
 
-IntrinsicDelaunay::IntrinsicDelaunay(const Vertices& V, const Faces& F) : vertexCount_(V.rows()) {
-    SidesByEdge edges(F);
+IntrinsicDelaunay::IntrinsicDelaunay(const Vertices& V, const Faces& F, const SidesByEdge& edges)
+    : vertexCount_(V.rows()) {
     const int front = static_cast<int>(3 * F.rows());
     const auto runsUp = [&](const Side& s) { return F(s.face(), s.corner()) == s.low; };
     std::atomic<bool> closedAndOriented = true;
@@ -129,9 +128,15 @@ IntrinsicDelaunay::IntrinsicDelaunay(const Vertices& V, const Faces& F) : vertex
     const auto back = [front](int side) { return front + 3 * (side / 3) + 2 - side % 3; };
     if (copies_ == 2)
         for (int s = 0; s < front; ++s) tail_[back(s)] = F(s / 3, (s + 1 - 3 * (s / 3)) % 3);
-    edges.forEachEdgeInParallel([&](Side* first, Side* last) {
+    edges.forEachEdgeInParallel([&](const Side* first, const Side* last) {
         first_[first->number] = 1;
-        if (last - first > 2) sortByAngle(V, F, first, last);
+        std::vector<Side> around;
+        if (last - first > 2) {
+            around.assign(first, last);
+            sortByAngle(V, F, around);
+            first = around.data();
+            last = first + around.size();
+        }
         // The copy that runs up the edge faces larger angles: it is glued to the copy of the next
         // triangle that runs down. The triangle of a boundary edge is glued to its own back.
         for (const Side* here = first; here != last; ++here) {

@@ -4,6 +4,7 @@
 
 #include "core/laplacian/intrinsic_triangulation.h"
 #include "core/mesh/mesh.h"
+#include "core/mesh/sides.h"
 
 namespace spectral {
 
@@ -21,7 +22,9 @@ class IntrinsicDelaunay {
   public:
     /// @param V  n x 3 positions, used to sort the triangles around non-manifold edges.
     /// @param F  m x 3; the corners of a triangle are distinct, every vertex is in some triangle.
-    IntrinsicDelaunay(const Vertices& V, const Faces& F);
+    IntrinsicDelaunay(const Vertices& V, const Faces& F)
+        : IntrinsicDelaunay(V, F, SidesByEdge(F)) {}
+    IntrinsicDelaunay(const Vertices& V, const Faces& F, const SidesByEdge& edges);
 
     /// Delaunay triangulation of the tufted cover, which has one copy of every triangle if the
     /// surface is closed and oriented, else a front and a back.

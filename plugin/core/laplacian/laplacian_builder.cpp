@@ -16,13 +16,19 @@ void checkMesh(const Vertices& V, const Faces& F, LaplacianKind kind) {
 }
 
 LaplacianBuilder::LaplacianBuilder(const Surface& surface, Components components,
-                                   LaplacianKind kind, BasisUpdate update, double conformalShare)
+                                   LaplacianKind kind, BasisUpdate update, double conformalShare,
+                                   const SidesByEdge* edges)
     : surface_(surface),
       components_(std::move(components)),
       kind_(kind),
       update_(update),
       conformalShare_(conformalShare) {
-    if (kind == LaplacianKind::IntrinsicDelaunay) intrinsic_.emplace(surface.X, surface.F);
+    if (kind == LaplacianKind::IntrinsicDelaunay) {
+        if (edges != nullptr)
+            intrinsic_.emplace(surface.X, surface.F, *edges);
+        else
+            intrinsic_.emplace(surface.X, surface.F);
+    }
     // Unless W is updated, its topology ends with it.
     current_.W = intrinsic_ && update != BasisUpdate::Full
                      ? std::move(*intrinsic_).stiffness(surface.X)

@@ -35,8 +35,10 @@ class LaplacianBuilder {
     ///                        W = (1 - share) W(X) + share W(X_0). If a part has shrunk to a line,
     ///                        its mass vanishes but this share of W does not, and contracts the
     ///                        line.
+    /// @param edges  of surface.F, if they are known.
     LaplacianBuilder(const Surface& surface, Components components, LaplacianKind kind,
-                     BasisUpdate update, double conformalShare = 0.0);
+                     BasisUpdate update, double conformalShare = 0.0,
+                     const SidesByEdge* edges = nullptr);
 
     const Laplacian& current() const { return current_; }
 

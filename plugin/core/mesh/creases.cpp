@@ -4,16 +4,16 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/mesh/sides.h"
 #include "core/support/types.h"
 
 namespace spectral {
 
-std::vector<std::array<Index, 2>> creaseEdges(const Vertices& X, const Faces& F, double angle) {
+std::vector<std::array<Index, 2>> creaseEdges(const Vertices& X, const Faces& F,
+                                              const SidesByEdge& sides, double angle) {
     std::vector<std::array<Index, 2>> edges;
     if (angle >= 180.0) return edges;  // no fold is sharper
     const double sine = std::sin(angle * kPi / 180.0), cosine = std::cos(angle * kPi / 180.0);
-    SidesByEdge(F).forEachEdge([&](auto first, auto end) {
+    sides.forEachEdge([&](auto first, auto end) {
         const Eigen::RowVector3d origin = X.row(first->low);
         const Eigen::RowVector3d edge = X.row(first->high) - origin;
         const auto corner = [&](auto side) { return F(side->face(), side->opposite()); };
@@ -37,25 +37,32 @@ std::vector<std::array<Index, 2>> creaseEdges(const Vertices& X, const Faces& F,
 
 std::vector<bool> creaseVertices(const Vertices& X, const Faces& F, double angle) {
     std::vector<bool> onCrease(static_cast<std::size_t>(X.rows()), false);
-    for (const auto [i, j] : creaseEdges(X, F, angle)) onCrease[i] = onCrease[j] = true;
+    for (const auto [i, j] : creaseEdges(X, F, SidesByEdge(F), angle))
+        onCrease[i] = onCrease[j] = true;
     return onCrease;
 }
 
-RoundedCreases roundedCreases(const Vertices& X, const Faces& F, const Vertices& displacement) {
+std::vector<bool> alongSharpEdges(const Vertices& X, const Faces& F, const SidesByEdge& edges) {
     constexpr double kSharp = 50.0;  // degrees
-    constexpr double kMore = 30.0;   // a statue's curls 15 times, a part by CAD 99, a wing 115
-    constexpr std::size_t kFewest = 10;
-    std::vector<int> edges(static_cast<std::size_t>(X.rows()), 0);
-    for (const auto& [i, j] : creaseEdges(X, F, kSharp)) {
-        ++edges[i];
-        ++edges[j];
+    std::vector<int> counts(static_cast<std::size_t>(X.rows()), 0);
+    for (const auto& [i, j] : creaseEdges(X, F, edges, kSharp)) {
+        ++counts[i];
+        ++counts[j];
     }
+    std::vector<bool> along(counts.size());
+    std::transform(counts.begin(), counts.end(), along.begin(), [](int n) { return n == 2; });
+    return along;
+}
+
+RoundedCreases roundedCreases(const std::vector<bool>& alongEdges, const Vertices& displacement) {
+    constexpr double kMore = 30.0;  // a statue's curls 15 times, a part by CAD 99, a wing 115
+    constexpr std::size_t kFewest = 10;
     std::vector<double> on, off;
     double squares = 0.0;
-    for (Index i = 0; i < X.rows(); ++i) {
+    for (Index i = 0; i < displacement.rows(); ++i) {
         const double square = displacement.row(i).squaredNorm();
-        (edges[i] == 2 ? on : off).push_back(std::sqrt(square));
-        if (edges[i] == 2) squares += square;
+        (alongEdges[i] ? on : off).push_back(std::sqrt(square));
+        if (alongEdges[i]) squares += square;
     }
     if (on.size() < kFewest || off.empty()) return {};
     const auto middle = off.begin() + static_cast<std::ptrdiff_t>(off.size() / 2);

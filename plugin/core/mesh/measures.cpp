@@ -57,26 +57,33 @@ MeshLengths lengthsOf(const Vertices& V, const Faces& F) {
 
 namespace {
 
+/// The bounding box of the used vertices; coordinates that are no numbers are left out.
+Eigen::AlignedBox3d boxOf(const Vertices& V, const std::vector<bool>& isUsed) {
+    Eigen::AlignedBox3d box;
+    for (Index i = 0; i < V.rows(); ++i)
+        for (int c = 0; isUsed[i] && c < 3; ++c) {
+            box.min()[c] = std::min(box.min()[c], V(i, c));
+            box.max()[c] = std::max(box.max()[c], V(i, c));
+        }
+    return box;
+}
+
 /// The lowest of the used coordinates, times a sign, along an axis, and how many vertices have it;
 /// none unless the others are farther from it than from each other, and those by more than the
 /// round-off of a plane, which is 1e-7 of its size in single precision.
-std::pair<double, Index> farthest(const Vertices& V, const std::vector<bool>& isUsed, int axis,
-                                  double sign) {
-    constexpr double kNone = std::numeric_limits<double>::infinity();
+/// @param box  of the used vertices.
+std::pair<double, Index> farthest(const Vertices& V, const std::vector<bool>& isUsed,
+                                  const Eigen::AlignedBox3d& box, int axis, double sign) {
     constexpr double kRoundOff = 1e-6;
-    Eigen::AlignedBox3d box;
-    double lowest = kNone, next = kNone, highest = -kNone;
+    const double lowest = std::min(sign * box.min()[axis], sign * box.max()[axis]),
+                 highest = std::max(sign * box.min()[axis], sign * box.max()[axis]);
+    double next = std::numeric_limits<double>::infinity();
     Index count = 0;
     for (Index i = 0; i < V.rows(); ++i) {
         if (!isUsed[i]) continue;
-        box.extend(V.row(i).transpose());
         const double at = sign * V(i, axis);
-        highest = std::max(highest, at);
-        if (at < lowest) {
-            next = lowest;
-            lowest = at;
-            count = 0;
-        } else if (at > lowest) {
+        if (at > lowest) {
+            if (!(at - lowest > highest - at)) return {lowest, 0};  // soon, on most meshes
             next = std::min(next, at);
         }
         count += at == lowest;
@@ -91,10 +98,11 @@ std::pair<double, Index> farthest(const Vertices& V, const std::vector<bool>& is
 /// Whether each vertex is one of these, along any axis.
 std::vector<bool> farVertices(const Vertices& V, const Faces& F) {
     const std::vector<bool> isUsed = usedBy(F, V.rows());
+    const Eigen::AlignedBox3d box = boxOf(V, isUsed);
     std::vector<bool> isFar(isUsed.size(), false);
     for (const int axis : {0, 1, 2})
         for (const double sign : {1.0, -1.0}) {
-            const auto [lowest, count] = farthest(V, isUsed, axis, sign);
+            const auto [lowest, count] = farthest(V, isUsed, box, axis, sign);
             for (Index i = 0; count > 0 && i < V.rows(); ++i)
                 if (isUsed[i] && sign * V(i, axis) == lowest) isFar[i] = true;
         }
@@ -146,9 +154,10 @@ double meanEdgeLength(const Vertices& V, const Faces& F) {
 
 MeshLengths::Filler fillerOf(const Vertices& V, const Faces& F) {
     const std::vector<bool> isUsed = usedBy(F, V.rows());
+    const Eigen::AlignedBox3d box = boxOf(V, isUsed);
     for (const int axis : {2, 1, 0})
         for (const double sign : {1.0, -1.0}) {
-            const auto [lowest, count] = farthest(V, isUsed, axis, sign);
+            const auto [lowest, count] = farthest(V, isUsed, box, axis, sign);
             if (count < 2) continue;
             double all = 0.0, seen = 0.0;
             bool hasWall = false;

@@ -10,7 +10,6 @@
 #include <utility>
 
 #include "core/mesh/measures.h"
-#include "core/mesh/sides.h"
 #include "core/mesh/union_find.h"
 
 namespace spectral {
@@ -30,9 +29,9 @@ using Edge = std::array<int, 2>;
 Edge endsOf(const Side& side) { return {side.low, side.high}; }
 
 /// The sides of triangles that no other has.
-std::vector<Side> boundarySides(const Faces& F) {
+std::vector<Side> boundarySides(const SidesByEdge& edges) {
     std::vector<Side> sides;
-    SidesByEdge(F).forEachEdge([&](auto first, auto end) {
+    edges.forEachEdge([&](auto first, auto end) {
         if (end - first == 1) sides.push_back(*first);
     });
     return sides;
@@ -312,9 +311,9 @@ Vertices rounded(const Vertices& X) {
 
 }  // namespace
 
-Seams findSeams(const Vertices& X, const Faces& F) {
+Seams findSeams(const Vertices& X, const Faces& F, const SidesByEdge& edges) {
     Seams seams;
-    const std::vector<Side> sides = boundarySides(F);
+    const std::vector<Side> sides = boundarySides(edges);
     if (sides.empty()) return seams;
     UnionFind vertices = joined(X, sides);
     std::vector<Side> boundary = singleOf(rooted(sides, vertices));

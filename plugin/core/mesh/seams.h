@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "core/mesh/mesh.h"
+#include "core/mesh/sides.h"
 
 namespace spectral {
 
@@ -33,6 +34,7 @@ struct Seams {
 
 /// @param X  n x 3 positions, finite.
 /// @param F  m x 3 indices into X; the corners of each triangle are distinct.
-Seams findSeams(const Vertices& X, const Faces& F);
+/// @param edges  of F.
+Seams findSeams(const Vertices& X, const Faces& F, const SidesByEdge& edges);
 
 }  // namespace spectral

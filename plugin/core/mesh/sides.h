@@ -29,9 +29,9 @@ class SidesByEdge {
         visit(sides_.data(), sides_.data() + sides_.size(), work);
     }
 
-    /// The same in parallel, in any order; `work` may reorder the sides of its edge.
+    /// The same in parallel, in any order.
     template <class Work>
-    void forEachEdgeInParallel(const Work& work) {
+    void forEachEdgeInParallel(const Work& work) const {
         parallelRows(static_cast<Index>(begin_.size()) - 1, [&](Index from, Index to) {
             visit(sides_.data() + begin_[from], sides_.data() + begin_[to], work);
         });

@@ -4,6 +4,8 @@
 #include <array>
 #include <map>
 #include <numeric>
+#include <optional>
+#include <utility>
 
 #include "core/mesh/mesh_check.h"
 #include "core/mesh/union_find.h"
@@ -106,25 +108,26 @@ void removeFlatComponents(Surface& surface) {
     surface.flatComponents = static_cast<int>(flat);
 }
 
-}  // namespace
-
-Surface joinedSurface(const Vertices& V, const Faces& F) {
+/// joinedSurface without its edges, unless they are those of what is cut.
+std::pair<Surface, std::optional<SidesByEdge>> joined(const Vertices& V, const Faces& F) {
     Surface cut = surfaceOf(V, F);
     removeFlatComponents(cut);
-    const Seams seams = findSeams(cut.X, cut.F);
+    SidesByEdge edges(cut.F);
+    const Seams seams = findSeams(cut.X, cut.F, edges);
     if (seams.first.empty() && seams.hanging.empty()) {
         cut.nearlyCopies = seams.nearby;
-        return cut;
+        return {std::move(cut), std::move(edges)};
     }
     std::vector<int> first = seams.first;
     if (first.empty()) {
         first.resize(cut.vertex.size());
         std::iota(first.begin(), first.end(), 0);
     }
-    Faces joined = cut.F.unaryExpr([&](int i) { return first[i]; });
-    if (!seams.hanging.empty()) joined = splitAt(seams.hanging, joined);
-    Surface surface = surfaceOf(cut.X, joined);
-    if (surface.F.rows() == 0) return cut;  // all triangles degenerate once joined
+    Faces whole = cut.F.unaryExpr([&](int i) { return first[i]; });
+    if (!seams.hanging.empty()) whole = splitAt(seams.hanging, whole);
+    Surface surface = surfaceOf(cut.X, whole);
+    if (surface.F.rows() == 0)  // all triangles degenerate once joined
+        return {std::move(cut), std::move(edges)};
     surface.nearlyCopies = seams.nearby;
     surface.flatComponents = cut.flatComponents;
     std::vector<Index> row(first.size(), -1);
@@ -138,7 +141,17 @@ Surface joinedSurface(const Vertices& V, const Faces& F) {
             surface.hanging.push_back(one);
         }
     for (Index& vertex : surface.vertex) vertex = cut.vertex[vertex];
-    return surface;
+    return {std::move(surface), std::nullopt};
+}
+
+}  // namespace
+
+Surface joinedSurface(const Vertices& V, const Faces& F) { return joined(V, F).first; }
+
+SurfaceWithEdges joinedSurfaceWithEdges(const Vertices& V, const Faces& F) {
+    auto [surface, edges] = joined(V, F);
+    if (!edges) edges.emplace(surface.F);
+    return {std::move(surface), *std::move(edges)};
 }
 
 Eigen::MatrixXd restricted(const Eigen::MatrixXd& values, const Surface& surface) {

@@ -35,6 +35,14 @@ Surface surfaceOf(const Vertices& V, const Faces& F);
 /// mesh, the others are its copies. Components without area are left out, unless all are.
 Surface joinedSurface(const Vertices& V, const Faces& F);
 
+/// The same with the edges of its triangles, which seams are found by: their sorting takes longer
+/// than most passes over a mesh.
+struct SurfaceWithEdges {
+    Surface surface;
+    SidesByEdge edges;  ///< Of surface.F.
+};
+SurfaceWithEdges joinedSurfaceWithEdges(const Vertices& V, const Faces& F);
+
 /// Restricts values at the vertices of a mesh to its surface; at a seam, to the mean of the copies.
 /// @param values  one row per vertex of the mesh.
 Eigen::MatrixXd restricted(const Eigen::MatrixXd& values, const Surface& surface);

@@ -208,8 +208,8 @@ TEST(Seams, ClosedPartsThatTouchStayApart) {
     Mesh right = testing::cube(3);
     right.V.col(0).array() += 2.0;
     const Mesh both = joined(testing::cube(3), right);
-    EXPECT_TRUE(findSeams(both.V, both.F).first.empty());
-    EXPECT_EQ(findSeams(both.V, both.F).nearby, 0);
+    EXPECT_TRUE(findSeams(both.V, both.F, SidesByEdge(both.F)).first.empty());
+    EXPECT_EQ(findSeams(both.V, both.F, SidesByEdge(both.F)).nearby, 0);
 }
 
 TEST(Seams, OpenSheetsJoinAlongACommonBoundary) {
