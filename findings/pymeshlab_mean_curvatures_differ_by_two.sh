@@ -1,6 +1,6 @@
 #!/bin/sh
-# pymeshlab 2025.7.post1: two filters' "Mean" curvature of one sphere differ by a factor of 2, and "ABS Curvature" is not
-# what its text says.
+# pymeshlab 2025.7.post1: two filters' "Mean" curvature of one sphere differ by a factor of 2, and "ABS Curvature" is
+# not what its text says.
 #
 # compute_scalar_by_discrete_curvature_per_vertex gives 1 / radius, the mean of the principal curvatures;
 # compute_curvature_and_color_apss_per_vertex gives their sum, and its text does not tell. The first filter's text has
