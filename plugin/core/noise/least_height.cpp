@@ -19,23 +19,31 @@ namespace {
 constexpr int kFilters = 6;
 constexpr int kProbes = 5;
 using Gram = Eigen::Matrix<double, kFilters, kFilters>;
-/// The part along the normals, and probes.
+/// Positions, and probes of three columns each.
+using Rows = Eigen::Matrix<double, Eigen::Dynamic, 3 * (1 + kProbes), Eigen::RowMajor>;
+/// Their parts along the normals.
 using Signals = Eigen::Matrix<double, Eigen::Dynamic, 1 + kProbes, Eigen::RowMajor>;
 
-/// (I - P) P^j of the shape and of the probes; 0 where not measured.
+/// (I - P) P^j of the shape and of the probes, along N; 0 where not measured. Probes lie along the
+/// normals, as noise does: over small cells, normals of vertices two edges apart differ so much
+/// that filters would take more of it away than of a scalar.
 std::array<Signals, kFilters> filteredSignals(const VertexGraph& graph, const Points& X,
                                               const Points& N,
                                               const std::vector<bool>& isMeasured) {
     std::array<Signals, kFilters> signals;
-    Probed<kProbes> here = withProbes<kProbes>(X), next = here;
+    const Probed<kProbes> probes = withProbes<kProbes>(X);
+    Rows here(X.rows(), Rows::ColsAtCompileTime);
+    here.leftCols<3>() = X;
+    for (int k = 1; k <= kProbes; ++k)
+        here.middleCols<3>(3 * k) = N.array().colwise() * probes.col(2 + k).array();
+    Rows next = here;
     for (Signals& signal : signals) {
         signal.setZero(X.rows(), 1 + kProbes);
         forEachMean(graph, here, [&](Index i, const auto& mean) {
             next.row(i) = mean;
             if (!isMeasured[i]) return;
-            const Eigen::Matrix<double, 1, 3 + kProbes> change = here.row(i) - mean;
-            signal(i, 0) = change.template head<3>().dot(N.row(i));
-            signal.row(i).template tail<kProbes>() = change.template tail<kProbes>();
+            for (int k = 0; k <= kProbes; ++k)
+                signal(i, k) = (here.row(i) - mean).template segment<3>(3 * k).dot(N.row(i));
         });
         here.swap(next);
     }

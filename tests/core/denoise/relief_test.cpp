@@ -5,6 +5,7 @@
 #include <cmath>
 #include <functional>
 #include <random>
+#include <utility>
 
 #include "core/denoise/denoise.h"
 #include "core/denoise/least_risk.h"
@@ -145,8 +146,16 @@ TEST(Diagnosis, MeasuresNoiseUnderAShapeThatIsAsHigh) {
         }
         return all;
     }();
-    for (const Mesh& mesh : {steep, cells}) {
-        const Mesh noisy = testing::withGaussianNoise(mesh, 0.12, 2);
+    const auto alongNormals = [](const Mesh& mesh, Mesh noisy) {
+        const Points N = smoothVertexNormals(faceGraph(mesh.F, mesh.V.rows()), mesh.V);
+        const Eigen::VectorXd heights = (noisy.V - mesh.V).cwiseProduct(N).rowwise().sum();
+        noisy.V = mesh.V + heights.asDiagonal() * N;
+        return noisy;
+    };
+    const Mesh all = testing::withGaussianNoise(cells, 0.12, 2);
+    for (const auto& [mesh, noisy] :
+         {std::pair(steep, testing::withGaussianNoise(steep, 0.12, 2)), std::pair(cells, all),
+          std::pair(cells, alongNormals(cells, all))}) {
         const double height = 0.12 * meanEdgeLength(mesh.V, mesh.F);
         const DenoiseResult result = denoise(noisy.V, noisy.F, {});
         EXPECT_EQ(result.diagnosis.kind, NoiseKind::White);
