@@ -58,7 +58,7 @@ class Product {
         entries_.resize(static_cast<std::size_t>(W.nonZeros() - W.rows()));
         parallelRows(W.rows(), [&](Index begin, Index end) {
             for (Index i = begin; i < end; ++i) {
-                Entry* next = &entries_[static_cast<std::size_t>(W.outerIndexPtr()[i] - i)];
+                Entry* next = entries_.data() + (W.outerIndexPtr()[i] - i);  // none on points
                 for (SparseMatrix::InnerIterator entry(W, i); entry; ++entry)
                     if (entry.row() != i)
                         *next++ = {
