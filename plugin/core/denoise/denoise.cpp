@@ -129,8 +129,9 @@ Removal removeAsDiagnosed(const FaceGraph& graph, const Points& X, const Diagnos
     if (diagnosis.hasVoxels())
         return removeVoxelSteps(
             graph, X, diagnosis.voxel, diagnosis.voxelAxes,
-            diagnosis.kind == NoiseKind::VoxelFaces ? kLengthOfFaces : kLengthOfCentres, removal,
-            progress);
+            diagnosis.voxelEdges *
+                (diagnosis.kind == NoiseKind::VoxelFaces ? kLengthOfFaces : kLengthOfCentres),
+            removal, progress);
     if (!(removal.noise.height.maxCoeff() > 0.0) || !(isKnown || diagnosis.isNoise()))
         return {diagnosis.X, 0};
     return removeNoise(graph, diagnosis.X, removal, progress);

@@ -64,16 +64,21 @@ double noiseShare(double correlation) {
 // Surfaces of volumes have steps of an edge or so, coordinates rounded to a grid .05 to .11. Edges:
 constexpr double kMinVoxel = 0.3, kMinRounding = 0.04;
 
-/// Notes voxels if the vertices on a grid are those of the surface of a binary volume.
-void findVoxels(const FaceGraph& graph, const CoordinateGrid& grid,
-                const std::vector<bool>& isMeasured, Diagnosis& diagnosis) {
+/// Notes voxels if the vertices are those of the surface of a binary volume.
+bool noteLattice(const SortedPoints& X, bool areAllOn, Diagnosis& diagnosis) {
+    const auto lattice = voxelLattice(X, areAllOn);
+    if (!lattice) return false;
+    diagnosis.kind = NoiseKind::Voxels;
+    diagnosis.voxel = lattice->voxel;
+    diagnosis.voxelEdges = lattice->edges;
+    return true;
+}
+
+/// Notes voxels if the vertices on a grid are those of the surface of a volume's voxel faces.
+void findVoxelFaces(const FaceGraph& graph, const CoordinateGrid& grid,
+                    const std::vector<bool>& isMeasured, Diagnosis& diagnosis) {
     // Of weighted residuals, mean edges: designed shapes are flat.
     constexpr double kMinDeviationOfFaces = 0.01;
-    if (const auto voxel = voxelLattice(grid)) {
-        diagnosis.kind = NoiseKind::Voxels;
-        diagnosis.voxel = *voxel;
-        return;
-    }
     const double edge = diagnosis.noise.meanEdge;
     if (grid.step.minCoeff() < kMinVoxel * edge) return;
     if (!(weightedResiduals(graph, diagnosis.X, isMeasured).deviation >
@@ -83,24 +88,27 @@ void findVoxels(const FaceGraph& graph, const CoordinateGrid& grid,
     diagnosis.voxel = grid.step;
 }
 
-/// The same for a volume that is turned, and where only most of the vertices are of it.
-void findTurnedVoxels(const FaceGraph& graph, const std::vector<bool>& isMeasured,
-                      Diagnosis& diagnosis) {
-    std::vector<Eigen::Matrix3d> candidates = latticeAxes(graph, diagnosis.X);
-    candidates.insert(candidates.begin(), Eigen::Matrix3d::Identity());
-    for (const Eigen::Matrix3d& axes : candidates) {
-        const Points X = diagnosis.X * axes.transpose();
-        diagnosis.voxelAxes = axes;
-        if (const auto grid = coordinateGrid(X)) {
-            findVoxels(graph, *grid, isMeasured, diagnosis);
-        } else if (const auto nearly = coordinateGrid(X, false)) {
-            if (const auto voxel = voxelLattice(*nearly, false)) {
-                diagnosis.kind = NoiseKind::Voxels;
-                diagnosis.voxel = *voxel;
-            }
-        }
-        if (diagnosis.kind != NoiseKind::None) return;
+/// Notes voxels of a volume that may be turned, and where only most of the vertices may be of it.
+/// @return  the grid of all coordinates as they are, if there is one.
+std::optional<CoordinateGrid> findVoxels(const FaceGraph& graph,
+                                         const std::vector<bool>& isMeasured,
+                                         Diagnosis& diagnosis) {
+    std::vector<Eigen::Matrix3d> candidates{Eigen::Matrix3d::Identity()};
+    for (std::size_t k = 0; k < candidates.size(); ++k) {
+        const SortedPoints X(diagnosis.X * candidates[k].transpose());
+        diagnosis.voxelAxes = candidates[k];
+        const auto grid = coordinateGrid(X);
+        if (noteLattice(X, true, diagnosis)) return grid;
+        if (grid)
+            findVoxelFaces(graph, *grid, isMeasured, diagnosis);
+        else
+            noteLattice(X, false, diagnosis);
+        if (diagnosis.kind != NoiseKind::None || (k == 0 && grid)) return grid;
+        if (k > 0) continue;
+        const auto turned = latticeAxes(graph, diagnosis.X);
+        candidates.insert(candidates.end(), turned.begin(), turned.end());
     }
+    return std::nullopt;
 }
 
 /// Notes rounding if the coordinates were rounded to the grid.
@@ -211,9 +219,7 @@ Diagnosis diagnoseWhole(const FaceGraph& graph, const Points& X,
     const bool areNeedles = quantile(triangleQuality(graph.F, X), 0.5) < kNeedleQuality;
     std::optional<CoordinateGrid> grid;
     if (!isKnown) {
-        grid = coordinateGrid(X);
-        if (grid) findVoxels(graph, *grid, isMeasured, diagnosis);
-        if (!grid) findTurnedVoxels(graph, isMeasured, diagnosis);
+        grid = findVoxels(graph, isMeasured, diagnosis);
         if (diagnosis.kind != NoiseKind::None) return diagnosis;
         if (diagnosis.stretchedAxis) {
             diagnosis.kind = NoiseKind::Stretched;

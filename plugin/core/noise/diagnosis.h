@@ -36,7 +36,8 @@ struct Diagnosis {
     Points X;                   ///< n x 3 positions without spikes.
     Index spikes = 0;           ///< Number of vertices that are spikes.
     std::optional<int> stretchedAxis;  ///< That of another unit than the others.
-    Eigen::RowVector3d voxel = Eigen::RowVector3d::Zero();    ///< Voxel size along each axis.
+    Eigen::RowVector3d voxel = Eigen::RowVector3d::Zero();  ///< Voxel size along each axis.
+    double voxelEdges = 1.0;  ///< Cells of the mesh along a voxel: more where it is finer.
     Eigen::Matrix3d voxelAxes = Eigen::Matrix3d::Identity();  ///< Unit axes of the voxels, as rows.
 
     bool isNoise() const;    ///< Whether its kind is one of noise.

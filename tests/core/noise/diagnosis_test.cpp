@@ -111,45 +111,65 @@ TEST(Diagnosis, TellsScanLinesFromNeedlesOfCad) {
 
 TEST(VoxelLattice, IsNotFoundInOtherMeshes) {
     const Mesh ball = testing::segmentedBall(10);
-    EXPECT_FALSE(coordinateGrid(testing::withGaussianNoise(ball, 0.2, 1).V));
-    EXPECT_FALSE(coordinateGrid(testing::icosphere(4).V));
-    EXPECT_FALSE(voxelLattice(*coordinateGrid(testing::cube(20).V)));
+    EXPECT_FALSE(coordinateGrid(SortedPoints(testing::withGaussianNoise(ball, 0.2, 1).V)));
+    EXPECT_FALSE(coordinateGrid(SortedPoints(testing::icosphere(4).V)));
+    EXPECT_FALSE(voxelLattice(SortedPoints(testing::cube(20).V)));
     const auto found = diagnosed(ball);
     // Marching tetrahedra also put vertices on diagonals, which are not grid edges.
     EXPECT_NE(found.kind, NoiseKind::White);
 }
 
-/// Marching cubes puts vertices at the midpoints of grid edges.
-TEST(VoxelLattice, ReturnsTheVoxelSizeAlongEachAxis) {
-    std::vector<Eigen::RowVector3d> middles;
-    constexpr int kRadius = 8;
-    const auto isInside = [](int x, int y, int z) { return x * x + y * y + z * z < 60; };
-    for (int x = -kRadius; x <= kRadius; ++x)
-        for (int y = -kRadius; y <= kRadius; ++y)
-            for (int z = -kRadius; z <= kRadius; ++z) {
-                const bool here = isInside(x, y, z);
-                if (here != isInside(x + 1, y, z)) middles.emplace_back(x + 0.5, y, z);
-                if (here != isInside(x, y + 1, z)) middles.emplace_back(x, y + 0.5, z);
-                if (here != isInside(x, y, z + 1)) middles.emplace_back(x, y, z + 0.5);
+/// Vertices of marching cubes, which are on grid edges, at a level between 0 and 1, on a ball whose
+/// voxels are of so many cells.
+Points verticesOfMarchingCubes(double level, const Eigen::RowVector3i& cells) {
+    std::vector<Eigen::RowVector3d> vertices;
+    const Eigen::RowVector3i radius = 6 * cells;
+    const auto isInside = [&](const Eigen::RowVector3i& at) {
+        const Eigen::RowVector3i p = (at + 8 * cells).array() / cells.array() - 8;
+        return p.squaredNorm() < 30;
+    };
+    for (int x = -radius[0]; x <= radius[0]; ++x)
+        for (int y = -radius[1]; y <= radius[1]; ++y)
+            for (int z = -radius[2]; z <= radius[2]; ++z) {
+                const Eigen::RowVector3i here(x, y, z);
+                for (int c = 0; c < 3; ++c) {
+                    const Eigen::RowVector3i next = here + Eigen::RowVector3i::Unit(c);
+                    if (isInside(here) == isInside(next)) continue;
+                    vertices.emplace_back(here.cast<double>());
+                    vertices.back()[c] += isInside(here) ? level : 1.0 - level;
+                }
             }
-    Points X(static_cast<Index>(middles.size()), 3);
-    const Eigen::RowVector3d size(0.7, 0.7, 2.1), place(1e3, -5.0, 0.1);
-    for (Index i = 0; i < X.rows(); ++i) X.row(i) = middles[i].cwiseProduct(size) + place;
-    const auto grid = coordinateGrid(X);
-    ASSERT_TRUE(grid);
-    const auto voxel = voxelLattice(*grid);
-    ASSERT_TRUE(voxel);
-    EXPECT_LT((*voxel - size).cwiseAbs().maxCoeff(), 1e-9);
+    Points X(static_cast<Index>(vertices.size()), 3);
+    for (Index i = 0; i < X.rows(); ++i) X.row(i) = vertices[i];
+    return X;
+}
 
+TEST(VoxelLattice, ReturnsTheVoxelSizeAlongEachAxis) {
+    const Eigen::RowVector3d size(0.7, 0.7, 2.1), place(1e3, -5.0, 0.1);
+    struct Volume {
+        double level;
+        Eigen::RowVector3i cells;
+    };
+    for (const auto& [level, cells] :
+         {Volume{0.5, {1, 1, 1}}, Volume{0.47, {1, 1, 1}}, Volume{0.37, {1, 1, 1}},
+          Volume{0.9, {1, 1, 1}}, Volume{0.5, {1, 1, 2}}, Volume{0.5, {3, 3, 3}}}) {
+        const Points X =
+            (verticesOfMarchingCubes(level, cells) * size.asDiagonal()).rowwise() + place;
+        const auto lattice = voxelLattice(SortedPoints(X));
+        ASSERT_TRUE(lattice) << level << " " << cells;
+        EXPECT_LT((lattice->voxel - size.cwiseProduct(cells.cast<double>())).cwiseAbs().maxCoeff(),
+                  1e-9)
+            << level << " " << cells;
+        EXPECT_NEAR(std::pow(lattice->edges, 3), cells.prod(), 1e-9);
+    }
     // One vertex off the lattice, and a tenth of them.
+    const Points X = verticesOfMarchingCubes(0.5, {1, 1, 1}) * size.asDiagonal();
     for (const Index every : {X.rows(), Index{10}}) {
         Points off = X;
         for (Index i = 0; i < X.rows(); i += every) off.row(i).array() += 0.05 + 1e-4 * double(i);
-        const auto nearly = coordinateGrid(off, false);
-        ASSERT_TRUE(nearly);
-        const auto found = voxelLattice(*nearly, false);
+        const auto found = voxelLattice(SortedPoints(off), false);
         ASSERT_TRUE(found);
-        EXPECT_LT((*found - size).cwiseAbs().maxCoeff(), 1e-9);
+        EXPECT_LT((found->voxel - size).cwiseAbs().maxCoeff(), 1e-9);
     }
 }
 
@@ -158,7 +178,7 @@ TEST(CoordinateGrid, CoordinatesRoundedToAGridAreNoiseOfKnownHeight) {
         Mesh mesh = testing::icosphere(5);
         const double edge = meanEdgeLength(mesh.V, mesh.F);
         mesh.V = (mesh.V / (step * edge)).array().round() * step * edge;
-        const auto grid = coordinateGrid(mesh.V);
+        const auto grid = coordinateGrid(SortedPoints(mesh.V));
         ASSERT_TRUE(grid);
         EXPECT_LT((grid->step.array() / (step * edge) - 1.0).abs().maxCoeff(), 1e-9);
         const Diagnosis found = diagnosed(mesh);
