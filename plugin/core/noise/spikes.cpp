@@ -142,19 +142,24 @@ Spikes findSpikes(const FaceGraph& graph, const Points& X, const std::vector<boo
 }
 
 Spikes certainSpikes(const FaceGraph& graph, const Points& X, Spikes spikes, double meanEdge) {
-    constexpr double kMinCertainSpike = 1.5;  // mean edges
+    constexpr double kMinCertainSpike = 1.5;  // mean edges of the mesh and, without it, of its own
     constexpr double kMinExplained = 0.97;
     const UniformLaplacian L(graph.vertices);
     const Eigen::VectorXd r = L.residual(X, spikes.N), rest = r - L.times(spikes.height);
     const VertexGraph& vertices = graph.vertices;
+    const Points without = X - spikes.height.asDiagonal() * spikes.N;
     for (Index i = 0; i < r.size(); ++i) {
         if (spikes.height[i] == 0.0) continue;
-        double before = r[i] * r[i], after = rest[i] * rest[i];
+        double before = r[i] * r[i], after = rest[i] * rest[i], length = 0.0;
         for (Index k = vertices.first[i]; k < vertices.first[i + 1]; ++k) {
-            before += r[vertices.at[k]] * r[vertices.at[k]];
-            after += rest[vertices.at[k]] * rest[vertices.at[k]];
+            const int other = vertices.at[k];
+            before += r[other] * r[other];
+            after += rest[other] * rest[other];
+            length += (without.row(i) - without.row(other)).norm();
         }
-        if (!(std::abs(spikes.height[i]) > kMinCertainSpike * meanEdge &&
+        const double edge = std::max(
+            meanEdge, length / static_cast<double>(std::max<Index>(vertices.degree(i), 1)));
+        if (!(std::abs(spikes.height[i]) > kMinCertainSpike * edge &&
               after < (1.0 - kMinExplained) * before))
             spikes.height[i] = 0.0;
     }

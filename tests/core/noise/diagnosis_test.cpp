@@ -227,6 +227,25 @@ TEST(Spikes, AFewHighOnesAreCertainButCornersAreNot) {
     EXPECT_EQ(found.spikes, 3);
     EXPECT_LT((found.X - Points(clean.V)).rowwise().norm().maxCoeff(), 0.2 * edge);
     EXPECT_EQ(diagnosed(testing::cube(20)).spikes, 0);
+
+    // The top of a pyramid over a hole; its edges are six times as long as those around it.
+    Mesh tent = testing::rectangle(20, 20, 20, 20);
+    const auto at = [&](double x, double y) {
+        Index i = 0;
+        while (tent.V(i, 0) != x || tent.V(i, 1) != y) ++i;
+        return static_cast<int>(i);
+    };
+    const int corners[] = {at(6, 6), at(14, 6), at(14, 14), at(6, 14)}, top = at(10, 10);
+    Index count = 0;
+    for (Index f = 0; f < tent.F.rows(); ++f) {
+        const Eigen::MatrixXd fromTop =
+            (tent.V(tent.F.row(f), Eigen::all).rowwise() - tent.V.row(top)).cwiseAbs();
+        if (fromTop.maxCoeff() > 4.5) tent.F.row(count++) = tent.F.row(f).eval();
+    }
+    tent.F.conservativeResize(count + 4, 3);
+    for (int k = 0; k < 4; ++k) tent.F.row(count + k) << corners[k], corners[(k + 1) % 4], top;
+    tent.V(top, 2) = 3.0;
+    EXPECT_EQ(diagnosed(tent).spikes, 0);
 }
 
 }  // namespace
