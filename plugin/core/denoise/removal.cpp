@@ -223,30 +223,63 @@ Followed correlatedRounds(const FaceGraph& graph, const Points& X0, const Remova
                       });
 }
 
+/// Cosine of a face and the ray through it, below which it does not say where on its ray a vertex
+/// is.
+constexpr double kGrazing = 0.2;
+
+/// Whether each face is a bridge over a silhouette: grazing, and long along its ray.
+std::vector<bool> bridges(const FaceGraph& graph, const Points& X, const Points& D) {
+    // Medians. A ball before a wall has bridges of 6 to 8; with 4, the noise of a time of flight
+    // camera makes 2 % of such faces, with 6 .4 %.
+    constexpr double kMinLength = 6.0;
+    Points N = areaNormals(X, graph.F);
+    normalizeRows(N);
+    std::vector<double> length(static_cast<std::size_t>(graph.faceCount()));
+    std::vector<bool> isBridge(length.size());
+    for (Index f = 0; f < graph.faceCount(); ++f) {
+        const Eigen::RowVector3d ray = D(graph.F.row(f), Eigen::all).colwise().mean();
+        const Eigen::Vector3d depth = X(graph.F.row(f), Eigen::all) * ray.transpose();
+        length[f] = depth.maxCoeff() - depth.minCoeff();
+        isBridge[f] = std::abs(N.row(f).dot(ray)) < kGrazing;
+    }
+    const double least = kMinLength * quantile(length, 0.5);
+    for (std::size_t f = 0; f < length.size(); ++f) isBridge[f] = isBridge[f] && length[f] > least;
+    return isBridge;
+}
+
 /// Noise of a scanner lies along its rays. That of the pixels of a depth camera is as large as the
-/// details; otherwise the strength is doubled until the removed height is that of the noise.
-Removal removeAlongRays(const FaceGraph& graph, const Points& X0, const RemovalOptions& options) {
+/// details; otherwise the strength is doubled until the removed height is that of the noise. Faces
+/// beside a silhouette do not hear its bridges, and vertices on it stay: they would follow faces on
+/// one side.
+Removal removeAlongRays(FaceGraph graph, const Points& X0, const RemovalOptions& options) {
     constexpr double kStrengthOfPixels = 12.0, kWeakest = 1.0, kStrongest = 16.0;
-    constexpr double kGrazing = 0.2;  // cosine: such faces do not say where on its ray a vertex is
     constexpr int kSweepsAlong = 160, kIterations = 5, kLong = 128;
     const Points& D = options.rays.direction;
+    const std::vector<bool> isBridge = bridges(graph, X0, D);
+    std::vector<bool> mayMove(options.mayMove);
+    for (Index f = 0; f < graph.faceCount(); ++f)
+        for (int c = 0; c < 3; ++c) {
+            int& other = graph.neighbours(f, c);
+            if (other >= 0 && isBridge[f] != isBridge[other]) other = -1;
+            if (isBridge[f]) mayMove[graph.F(f, c)] = false;
+        }
     Removal removal{X0, kIterations};
     for (double strength = options.rays.arePixels ? kStrengthOfPixels : kWeakest;
          strength <= kStrongest; strength *= 2.0) {
         Points N = normalsOfLeastVariation(graph, X0, strength);
-        for (Index f = 0; f < N.rows(); ++f)  // such as a bridge over a silhouette
+        for (Index f = 0; f < N.rows(); ++f)
             if (std::abs(N.row(f).dot(D(graph.F.row(f), Eigen::all).colwise().mean())) < kGrazing)
                 N.row(f).setZero();
-        removal.X = followNormalsAlong(graph, X0, N, D, options.mayMove, kSweepsAlong);
+        removal.X = followNormalsAlong(graph, X0, N, D, mayMove, kSweepsAlong);
         if (options.rays.arePixels) break;
         Eigen::VectorXd removed = removedAlongNormals(graph, X0, removal.X, options).cwiseAbs();
         if (medianDeviation({removed.begin(), removed.end()}) > 1.0) break;
     }
     // Noise has no long waves: those that flatter normals add up to are taken off.
     Eigen::VectorXd along = (removal.X - X0).cwiseProduct(D).rowwise().sum();
-    along -= LocalAverage(graph.vertices, options.mayMove, kLong).of(along);
+    along -= LocalAverage(graph.vertices, mayMove, kLong).of(along);
     for (Index i = 0; i < along.size(); ++i)
-        if (!options.mayMove[i]) along[i] = 0.0;
+        if (!mayMove[i]) along[i] = 0.0;
     removal.X = X0 + along.asDiagonal() * D;
     return removal;
 }

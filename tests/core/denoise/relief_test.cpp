@@ -297,5 +297,34 @@ TEST(ScanRays, AreTheDirectionOfNoiseOrTheRaysOfPixels) {
     EXPECT_LT((pixels.direction - Points(depth.V.rowwise().normalized())).norm(), 1e-9);
 }
 
+TEST(Denoise, LeavesVerticesOnASilhouetteInTheirPlace) {
+    // A camera at the origin, a box before a wall.
+    Mesh truth = sheet([](double x, double y) { return wave(x, 25.0) + wave(y, 31.0); });
+    Mesh scan = truth;
+    std::vector<bool> isBeforeWall;
+    std::mt19937 random(5);
+    std::normal_distribution<double> normal(0.0, 0.3);
+    for (Index i = 0; i < truth.V.rows(); ++i) {
+        const double x = truth.V(i, 0) - 30.0, y = truth.V(i, 1) - 30.0;
+        isBeforeWall.push_back(std::max(std::abs(x + 0.2 * y), std::abs(y - 0.2 * x)) < 15.0);
+        const double z = 100.0 + truth.V(i, 2) - (isBeforeWall.back() ? 20.0 : 0.0);
+        const Eigen::RowVector3d ray(x / 100.0, y / 100.0, 1.0);
+        truth.V.row(i) = z * ray;
+        scan.V.row(i) = (z + normal(random)) * ray;
+    }
+    const VertexGraph vertices = faceGraph(scan.F, scan.V.rows()).vertices;
+    const DenoiseResult result = denoise(scan.V, scan.F, {});
+    Eigen::Array2d before = Eigen::Array2d::Zero(), after = before;  // beside, and on, a silhouette
+    for (Index i = 0; i < truth.V.rows(); ++i) {
+        int on = 0;
+        for (Index k = vertices.first[i]; k < vertices.first[i + 1]; ++k)
+            if (isBeforeWall[i] != isBeforeWall[vertices.at[k]]) on = 1;
+        before[on] += (scan.V.row(i) - truth.V.row(i)).squaredNorm();
+        after[on] += (result.V.row(i) - truth.V.row(i)).squaredNorm();
+    }
+    EXPECT_LT(std::sqrt(after[0] / before[0]), 0.8);
+    EXPECT_LT(std::sqrt(after[1] / before[1]), 1.1);
+}
+
 }  // namespace
 }  // namespace spectral
