@@ -53,7 +53,8 @@ nb::dict applyFilter(const std::string& name, const Positions& vertices, const I
                      const std::optional<Table>& values, const std::optional<Pairs>& gain,
                      const std::optional<TiledTuple>& whole, nb::handle progress, int threads,
                      const std::string& moreMemory, bool isShell) {
-    FilterInput input{mapOf(vertices, 3), mapOf(faces, 3)};
+    FilterInput input{viewOfRows(vertices.data(), static_cast<Eigen::Index>(vertices.shape(0))),
+                      viewOfRows(faces.data(), static_cast<Eigen::Index>(faces.shape(0)))};
     if (selected) {
         requireRows(*selected, vertices);
         input.selected.assign(selected->data(), selected->data() + selected->shape(0));

@@ -88,8 +88,9 @@ Values valuesOf(const val& options) {
     return values;
 }
 
-FilterInput inputOf(const val& mesh) {
-    FilterInput input{rowsOf<double>(mesh["vertices"], 3), rowsOf<int>(mesh["faces"], 3)};
+/// @param V, F  vertices and faces of the mesh, kept by the caller.
+FilterInput inputOf(const val& mesh, const Rows<double>& V, const Rows<int>& F) {
+    FilterInput input{viewOfRows(V.data(), V.rows()), viewOfRows(F.data(), F.rows())};
     if (const val selected = mesh["selected"]; !isMissing(selected)) {
         const Rows<unsigned char> flags = rowsOf<unsigned char>(selected, 1);
         input.selected.assign(flags.data(), flags.data() + flags.size());
@@ -200,8 +201,10 @@ val applied(const std::string& name, const val& mesh, const val& options, const 
             progress(stage, fraction);
             return true;
         });
+        const Rows<double> V = rowsOf<double>(mesh["vertices"], 3);
+        const Rows<int> F = rowsOf<int>(mesh["faces"], 3);
         const FilterOutput output =
-            apply(filterNamed(name), inputOf(mesh), valuesOf(options), listener);
+            apply(filterNamed(name), inputOf(mesh, V, F), valuesOf(options), listener);
         val made = val::object();
         if (output.V.rows() > 0) made.set("vertices", arrayOf(output.V));
         if (output.details.rows() > 0) made.set("details", arrayOf(output.details));

@@ -49,7 +49,7 @@ double orthonormalityError(const Eigen::MatrixXd& Phi, const Eigen::VectorXd& D)
 
 double relativeError(const Operator& A, const Eigen::MatrixXd& difference) {
     Eigen::MatrixXd centred = A.mesh.V;
-    A.constants.remove(centred);
+    A.constants.remove(A.D, centred);
     const Eigen::VectorXd sqrtD = A.D.cwiseSqrt();
     return (sqrtD.asDiagonal() * difference).norm() / (sqrtD.asDiagonal() * centred).norm();
 }

@@ -74,9 +74,10 @@ CoarseSurface coarsened(const MeshLaplacian& mesh, const Vertices& smooth, doubl
         inCells += means.dot(stiffness * means);
     }
     if (inCells > 0.0) stiffness *= energy / inCells;
-    Components components{Eigen::VectorXi(count), mesh.components.count};
-    for (Index i = 0; i < count; ++i) components.label[i] = mesh.components.label[centres[i]];
-    coarse.laplacian.constants = ConstantModes(std::move(components), coarse.laplacian.D);
+    Eigen::VectorXi label(count);
+    for (Index i = 0; i < count; ++i) label[i] = mesh.components.label[centres[i]];
+    coarse.laplacian.constants =
+        ConstantModes({std::move(label), mesh.components.count}, coarse.laplacian.D);
     return coarse;
 }
 

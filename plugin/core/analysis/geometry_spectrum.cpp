@@ -65,8 +65,9 @@ Signal signalOf(MeshLaplacian mesh, Boundary boundary) {
     const Interior interior(mesh.surface.F, mesh.components, boundary);
     if (interior.isWhole()) {
         Eigen::MatrixXd U = std::move(mesh.surface.X);
-        mesh.laplacian.constants.remove(U);
-        mesh.laplacian.constants.remove(U);  // again, for round-off if components are far apart
+        mesh.laplacian.constants.remove(mesh.laplacian.D, U);
+        mesh.laplacian.constants.remove(mesh.laplacian.D,
+                                        U);  // again, for round-off if components are far apart
         return {std::move(mesh.laplacian), std::move(U)};
     }
     if (interior.size() == 0)
@@ -80,7 +81,7 @@ Signal signalOf(MeshLaplacian mesh, Boundary boundary) {
         throw InvalidOption(ErrorCode::BoundaryFixesAll,
                             "boundary = fixed leaves nothing to measure: the boundary determines "
                             "the whole surface, as on a flat one");
-    inside.constants.remove(remainder.U);
+    inside.constants.remove(inside.D, remainder.U);
     return {std::move(inside), std::move(remainder.U)};
 }
 

@@ -47,7 +47,9 @@ FilterOutput advised(const Filter& filter, const FilterInput& input, const Value
         FilterOutput output = withSteadyProgress(progress, [&](const Progress& steady) {
             const ThreadTeam team(threads > 0 ? threads : threadCount(), steady);
             checkMesh(input.V, input.F);  // before it is measured
-            return work(input.whole ? input.whole->lengths : lengthsOf(input.V, input.F), steady);
+            const MeshLengths lengths =
+                input.whole ? input.whole->lengths : lengthsOf(input.V, input.F);
+            return work(lengths, steady);
         });
         warnOfSelection(input, given, output);
         const auto translate = [&](FilterOutput& part) {

@@ -23,10 +23,10 @@ struct TiledSurface {
     std::vector<bool> inner;    ///< n: vertices that are not near where the tile was cut out.
 };
 
-/// A mesh, as a host hands it to a filter.
+/// A mesh, as a host hands it to a filter; the host keeps V and F.
 struct FilterInput {
-    Vertices V;                    ///< n x 3 positions.
-    Faces F;                       ///< m x 3 vertex indices.
+    VerticesView V;                ///< n x 3 positions.
+    FacesView F;                   ///< m x 3 vertex indices.
     std::vector<bool> selected{};  ///< n, selected vertices and corners of selected faces, for the
                                    ///< parameter `selected`.
     Eigen::MatrixXd values{};  ///< n x c: the vertex quality (c >= 1), or red, green and blue from

@@ -33,6 +33,9 @@ constexpr double kCollapsed = 0.1;
 /// Failing steps are halved down to 1 / kFinest of the filter, however few steps a pass has.
 constexpr int kFinest = 64;
 
+/// A shape, as its displacement from X: for distances and areas single precision will do.
+using Displacement = Eigen::Matrix<float, Eigen::Dynamic, 3>;
+
 /// Norms of the rows of A - B.
 Eigen::VectorXd distances(const Vertices& A, const Vertices& B) {
     Eigen::VectorXd length(A.rows());
@@ -68,15 +71,16 @@ class Limit {
     /// @param X   the input.
     /// @param E1  the shape that Y_1 is compared with.
     /// @param isInner  n, or empty: true; elsewhere the border of a tile causes errors of its own.
-    Limit(const Vertices& X, Vertices E1, const LaplacianBuilder& laplacians,
+    Limit(const Vertices& X, Displacement E1, const LaplacianBuilder& laplacians,
           const std::vector<bool>& isInner)
-        : X_(X), laplacians_(laplacians), isInner_(isInner), Y_(std::move(E1)) {}
+        : X_(X), laplacians_(laplacians), isInner_(isInner), E1_(std::move(E1)) {}
 
     /// @param quarter  log areas around the vertices of F^(1/4)(sqrt(A)) X.
     void addFirst(Vertices Y, const Eigen::ArrayXd& quarter) {
         const Eigen::ArrayXd growth =
             logAreasAround(laplacians_.current().W, laplacians_.faces(), Y) - quarter;
-        replace({}, std::move(Y));
+        replace({}, std::move(Y), X_ + E1_.cast<double>());
+        E1_.resize(0, 3);
         // The distance is an error of first order; that of second order is to it as the distance is
         // to the displacement, or more where areas shrink, since they do so ever faster. Where they
         // grow, they do so ever more slowly. What has gone in the first quarter is noise.
@@ -100,7 +104,7 @@ class Limit {
         const double before = isExtrapolated_ && steps == kManySteps
                                   ? distance_ * kSecondOrder / (kSecondOrder - 1.0)
                                   : distance_;
-        replace(std::move(E), std::move(Y));
+        replace(std::move(E), std::move(Y), E_.rows() > 0 ? E_ : Y_);
         shrinking_ = distance_ > 0.0 ? before / distance_ : kSecondOrder;
         // Without extrapolation errors shrink no faster than those of second order, whatever the
         // first distances. The distance bounds the error where it does not shrink.
@@ -132,10 +136,11 @@ class Limit {
     }
 
   private:
-    /// @param E  empty if it is Y.
-    void replace(Vertices E, Vertices Y) {
+    /// @param E       empty if it is Y.
+    /// @param before  the shape before it.
+    void replace(Vertices E, Vertices Y, const Vertices& before) {
         const Vertices& shape = isExtrapolated_ ? E : Y;
-        errors_ = distances(shape, E_.rows() > 0 ? E_ : Y_);
+        errors_ = distances(shape, before);
         isKept_ = laplacians_.mass(shape).array() >= kCollapsed * laplacians_.inputMass().array();
         for (Index i = 0; i < isKept_.size(); ++i) isKept_[i] = isKept_[i] && isInner(i);
         distance_ = largestOf(errors_);
@@ -152,6 +157,7 @@ class Limit {
     const Vertices& X_;
     const LaplacianBuilder& laplacians_;
     const std::vector<bool>& isInner_;
+    Displacement E1_;                               // until Y_1 is there
     Vertices Y_, E_;                                // E_ is extrapolated; empty if it is Y_
     Eigen::VectorXd errors_;                        // n, estimated, where parts collapse, too
     Eigen::Array<bool, Eigen::Dynamic, 1> isKept_;  // n, false where parts collapse
@@ -209,12 +215,14 @@ AutomaticSteps automaticSteps(LaplacianBuilder& laplacians, StepEvaluator& evalu
         }
     }
     const std::vector<bool> whole;
-    Limit limit(X, std::move(first[0]), laplacians, options.tile ? options.tile->inner : whole);
+    Limit limit(X, (first[0] - X).cast<float>(), laplacians,
+                options.tile ? options.tile->inner : whole);
     const Eigen::ArrayXd quarterAreas =
         logAreasAround(laplacians.current().W, laplacians.faces(), first[2]);
     // Of the second pass, by interpolation.
-    Vertices ahead = 0.375 * X + 0.75 * first[2] - 0.125 * first[1];
-    first.pop_back();
+    Displacement ahead = (0.75 * (first[2] - X) - 0.125 * (first[1] - X)).cast<float>();
+    Vertices half = std::move(first[1]);
+    first.clear();
 
     double done = kFirst;
     bool wasEven = true;
@@ -223,24 +231,25 @@ AutomaticSteps automaticSteps(LaplacianBuilder& laplacians, StepEvaluator& evalu
         const Progress pass = progress.part(done, end);
         done = end;
         if (K == 1) {
-            result.last =
-                midpointSteps(laplacians, evaluate, X, K, kFinest, pass, std::move(first[1]));
+            result.last = midpointSteps(laplacians, evaluate, X, K, kFinest, pass, std::move(half));
             limit.addFirst(std::move(result.last.X), quarterAreas);
         } else {
             if (K > 2) {  // a quarter step
                 laplacians.reset();
-                ahead = evaluate.predict(laplacians.current(), X, {0.25 / K}, pass.part(0.0, 0.0))
-                            .Y.front();
+                ahead = (evaluate.predict(laplacians.current(), X, {0.25 / K}, pass.part(0.0, 0.0))
+                             .Y.front() -
+                         X)
+                            .cast<float>();
             }
-            const auto run = [&](const Vertices* firstQuarter) {
+            const auto run = [&](Vertices firstQuarter) {
                 return midpointSteps(laplacians, evaluate, X, K, std::max(K, kFinest), pass, {},
-                                     firstQuarter);
+                                     std::move(firstQuarter));
             };
             try {
-                result.last = run(&ahead);
+                result.last = run(X + std::exchange(ahead, {}).cast<double>());
             } catch (const SolverFailure&) {
                 // The whole shape changes so fast that shapes ahead mislead: it has collapsed.
-                result.last = run(nullptr);
+                result.last = run({});
             }
         }
         // If one of two passes had to take smaller steps, both may have taken the same ones.

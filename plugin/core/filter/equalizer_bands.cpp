@@ -126,7 +126,7 @@ EqualizerBands::EqualizerBands(const Vertices& V, const Faces& F, const BandOpti
                                    evaluation, stage)
                 .Y;
         for (Eigen::MatrixXd& band : Y) {
-            L.constants.remove(band);  // which every gain keeps
+            L.constants.remove(L.D, band);  // which every gain keeps
             if (!isWhole) band = interior.extended(std::move(band));
             bands_.emplace_back((weight.asDiagonal() * band).cast<float>());
             band.resize(0, 0);

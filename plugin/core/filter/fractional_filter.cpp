@@ -178,7 +178,7 @@ AutomaticSteps filterInSteps(LaplacianBuilder& laplacians, StepEvaluator& evalua
 
 }  // namespace
 
-FilterResult fractionalFilter(const Vertices& V, const Faces& F, const FilterOptions& given,
+FilterResult fractionalFilter(const VerticesView& V, const FacesView& F, const FilterOptions& given,
                               const Progress& caller) {
     const Progress progress = caller.forwards();
     const ThreadTeam team(progress);
@@ -187,20 +187,18 @@ FilterResult fractionalFilter(const Vertices& V, const Faces& F, const FilterOpt
     FilterOptions options = given;
     if (options.tolerance == 0.0) options.tolerance = defaultTolerance(lengthsOf(V, F));
     checkOptions(options);
-    auto [surface, sides] = joinedSurfaceWithEdges(V, F);
-    std::optional<SidesByEdge> edges = std::move(sides);
+    auto [surface, edges] = joinedSurfaceWithEdges(V, F);
     const TransferFunction transfer(options.transferFunction, cutoffFrequency(options.featureSize));
     const std::vector<bool> isFixed = fixedVerticesOf(surface, options);
     keepFixed(isFixed, surface);
     const Interior interior(connectedComponents(surface.F, surface.X.rows()), isFixed);
 
-    std::optional<LaplacianBuilder> laplacians(std::in_place, surface, interior.surfaceComponents(),
-                                               options.laplacian, options.basisUpdate,
-                                               options.conformalShare, &*edges);
     std::vector<bool> alongEdges;
     if (options.creaseAngle == 0.0 && !options.whole)
-        alongEdges = alongSharpEdges(surface.X, surface.F, *edges);
-    edges.reset();  // 72 bytes a vertex, which the terms of the steps need
+        alongEdges = alongSharpEdges(surface.X, surface.F, edges);
+    std::optional<LaplacianBuilder> laplacians(std::in_place, surface, interior.surfaceComponents(),
+                                               options.laplacian, options.basisUpdate,
+                                               options.conformalShare, std::move(edges));
     const double edge = meanEdgeLength(surface.X, surface.F),
                  meanEdge = options.whole ? options.whole->meanEdge : edge;
     const EvaluationOptions evaluation = evaluationFor(options, surface, meanEdge);

@@ -99,7 +99,7 @@ struct FilterResult : SurfaceCounts, Movement, Work {
 /// @param V  n x 3 positions, finite.
 /// @param F  m x 3 vertex indices, m >= 1; any topology, unreferenced vertices allowed.
 /// @throws InvalidMesh, InvalidOption, SolverFailure, Cancelled
-FilterResult fractionalFilter(const Vertices& V, const Faces& F, const FilterOptions& options,
-                              const Progress& progress = {});
+FilterResult fractionalFilter(const VerticesView& V, const FacesView& F,
+                              const FilterOptions& options, const Progress& progress = {});
 
 }  // namespace spectral

@@ -16,7 +16,7 @@ void append(Evaluation step, double h, FractionalSteps& steps) {
     requireUsefulAccuracy(error);
     steps.errorEstimate = error;
     steps.accuracyReached = steps.accuracyReached && step.accuracyReached;
-    steps.X = std::move(step.Y.front());
+    steps.before = std::exchange(steps.X, std::move(step.Y.front()));
     steps.sizes.push_back(h);
 }
 
@@ -28,15 +28,16 @@ constexpr double kMinArea = 1e-2;
 /// One step of the midpoint rule, or several smaller ones.
 /// @param X      shape before the first step, which `steps` does not hold.
 /// @param half   shape at the half step if it is known, else empty.
-/// @param ahead  shape whose Laplacian predicts the half step; null: that of the step's start.
+/// @param ahead  shape whose Laplacian predicts the half step; empty: that of the step's start.
 void midpointStep(LaplacianBuilder& laplacians, StepEvaluator& evaluate, const Vertices& X,
-                  double h, double smallest, Vertices half, const Vertices* ahead,
+                  double h, double smallest, Vertices half, Vertices ahead,
                   const Progress& progress, FractionalSteps& steps) {
     const Vertices& start = steps.sizes.empty() ? X : steps.X;
     try {
         double area = laplacians.inputMass().sum();
         if (half.rows() == 0) {
-            laplacians.update(ahead != nullptr ? *ahead : start);
+            laplacians.update(ahead.rows() > 0 ? ahead : start);
+            ahead.resize(0, 3);
             area = laplacians.area();
             half = evaluate.predict(laplacians.current(), start, {0.5 * h}, progress.part(0.0, 0.5))
                        .Y.front();
@@ -50,7 +51,7 @@ void midpointStep(LaplacianBuilder& laplacians, StepEvaluator& evaluate, const V
     } catch (const SolverFailure&) {
         if (0.5 * h < smallest) throw;
         for (const double from : {0.0, 0.5})
-            midpointStep(laplacians, evaluate, X, 0.5 * h, smallest, {}, nullptr,
+            midpointStep(laplacians, evaluate, X, 0.5 * h, smallest, {}, {},
                          progress.part(from, from + 0.5), steps);
     }
 }
@@ -72,6 +73,7 @@ FractionalSteps fixedSteps(LaplacianBuilder& laplacians, StepEvaluator& evaluate
                            int K, const Progress& progress) {
     FractionalSteps steps{X, {}};
     for (int step = 0; step < K; ++step) {
+        steps.before.resize(0, 3);
         const Progress stage =
             progress.part(static_cast<double>(step) / K, (step + 1.0) / K, nameOf(step, K));
         try {
@@ -89,29 +91,27 @@ FractionalSteps fixedSteps(LaplacianBuilder& laplacians, StepEvaluator& evaluate
 
 FractionalSteps midpointSteps(LaplacianBuilder& laplacians, StepEvaluator& evaluate,
                               const Vertices& X, int K, int finest, const Progress& progress,
-                              Vertices firstHalf, const Vertices* firstQuarter) {
+                              Vertices firstHalf, Vertices ahead) {
     const double smallest = (1.0 - 1e-9) / finest;
     FractionalSteps steps;
-    Vertices before, quarter;
+    const bool isAhead = ahead.rows() > 0;
     for (int step = 0; step < K; ++step) {
         const double from = static_cast<double>(step) / K;
-        const Vertices* ahead = step == 0 ? firstQuarter : nullptr;
         const bool areEven = steps.sizes.size() == static_cast<std::size_t>(step);
-        if (firstQuarter != nullptr && step > 0 && areEven) {
-            quarter = 1.25 * steps.X - 0.25 * before;
-            ahead = &quarter;
-        }
-        if (firstQuarter != nullptr) before = step == 0 ? X : steps.X;
+        if (isAhead && step > 0 && areEven)
+            ahead = 1.25 * steps.X - 0.25 * (step > 1 ? steps.before : X);
+        steps.before.resize(0, 3);
         const Progress stage = progress.part(from, (step + 1.0) / K, nameOf(step, K));
         try {
             midpointStep(laplacians, evaluate, X, 1.0 / K, smallest, std::exchange(firstHalf, {}),
-                         ahead, stage, steps);
+                         std::exchange(ahead, {}), stage, steps);
         } catch (const SolverFailure& failure) {
             throw failureDuring(failure, "at " + std::to_string(static_cast<int>(100.0 * from)) +
                                              " % of the filter: ");
         }
         stage.report(1.0, "done");
     }
+    steps.before.resize(0, 3);
     return steps;
 }
 

@@ -15,6 +15,7 @@ struct FractionalSteps {
     std::vector<double> sizes;    ///< The fractional power of each step; they sum to 1.
     double errorEstimate = 0.0;   ///< Estimated relative error of all evaluations.
     bool accuracyReached = true;  ///< Whether every evaluation was within its share of accuracy.
+    Vertices before{};            ///< While steps are taken: the shape before the last one.
 };
 
 /// The paper's scheme: K steps of F^(1/K), each with the Laplacian of the shape left by the
@@ -40,10 +41,10 @@ FractionalSteps fixedSteps(LaplacianBuilder& laplacians, StepEvaluator& evaluate
 ///
 /// @param finest        >= K.
 /// @param firstHalf     X_h/2 of the first step if it is known, else empty.
-/// @param firstQuarter  X_h/4 of the first step, about; or null.
+/// @param firstQuarter  X_h/4 of the first step, about; or empty.
 /// @throws SolverFailure  when a step of 1 / finest fails; it says how far the filter got.
 FractionalSteps midpointSteps(LaplacianBuilder& laplacians, StepEvaluator& evaluate,
                               const Vertices& X, int K, int finest, const Progress& progress,
-                              Vertices firstHalf = {}, const Vertices* firstQuarter = nullptr);
+                              Vertices firstHalf = {}, Vertices firstQuarter = {});
 
 }  // namespace spectral

@@ -44,21 +44,21 @@ Faces trianglesWithData(const Faces& F, const Eigen::Array<bool, Eigen::Dynamic,
 /// Whether a signal is constant on each component, to round-off: there is nothing to filter, and an
 /// error relative to the size of the signal would be meaningless.
 /// @param x  n entries in [-1, 1].
-bool isConstant(Eigen::MatrixXd x, const ConstantModes& constants) {
+bool isConstant(Eigen::MatrixXd x, const Laplacian& laplacian) {
     constexpr double kRoundOff = 1e-13;
-    constants.remove(x);
+    laplacian.constants.remove(laplacian.D, x);
     return x.cwiseAbs().maxCoeff() <= kRoundOff;
 }
 
 /// Centres each signal and scales it to 1: a large mean costs no digits, squares cannot overflow,
 /// and each is filtered as accurately as alone. A constant signal becomes 0.
 /// @return  the scale of each signal; 0 if it is constant.
-Eigen::RowVectorXd normalize(const ConstantModes& constants, Eigen::MatrixXd& X) {
+Eigen::RowVectorXd normalize(const Laplacian& laplacian, Eigen::MatrixXd& X) {
     X.rowwise() -= (0.5 * X.colwise().minCoeff() + 0.5 * X.colwise().maxCoeff()).eval();
     Eigen::RowVectorXd scale = X.cwiseAbs().colwise().maxCoeff();
     for (Index c = 0; c < X.cols(); ++c) {
         if (scale[c] > 0.0) X.col(c) /= scale[c];
-        if (!isConstant(X.col(c), constants)) continue;
+        if (!isConstant(X.col(c), laplacian)) continue;
         X.col(c).setZero();
         scale[c] = 0.0;
     }
@@ -96,7 +96,7 @@ FilteredSignal filterSignal(const Vertices& V, const Faces& F, const Eigen::Matr
     StepEvaluator evaluate(evaluation, interior, transfer);
 
     Eigen::MatrixXd X = restricted(Q, surface);
-    const Eigen::RowVectorXd scale = normalize(laplacian.constants, X);
+    const Eigen::RowVectorXd scale = normalize(laplacian, X);
 
     FilteredSignal result;
     static_cast<SurfaceCounts&>(result) =

@@ -57,11 +57,15 @@ ThinParts thinPartFactors(const SparseMatrix& W, const Faces& F, const Vertices&
                           const ThinPartsOfTile* tile) {
     const Eigen::ArrayXd before = logAreasAround(W, F, X), quarter = logAreasAround(W, F, weak),
                          after = logAreasAround(W, F, whole);
-    const Eigen::ArrayXd logOfLoss =
-        ((quarter - after) * 4.0 / 3.0).max((before - quarter - std::log(kNoisyArea)) * 4.0);
-    Eigen::VectorXd factors = (before - quarter > -std::log(kLeastArea))
-                                  .select(kMaxFactor, logOfLoss / -std::log(kKeptArea))
-                                  .max(1.0);
+    const auto logOfLoss = [&](Index i) {
+        return std::max((quarter[i] - after[i]) * 4.0 / 3.0,
+                        (before[i] - quarter[i] - std::log(kNoisyArea)) * 4.0);
+    };
+    Eigen::VectorXd factors(X.rows());
+    for (Index i = 0; i < factors.size(); ++i)
+        factors[i] = before[i] - quarter[i] > -std::log(kLeastArea)
+                         ? kMaxFactor
+                         : std::max(logOfLoss(i) / -std::log(kKeptArea), 1.0);
     double largest = 1.0;
     for (Index i = 0; i < factors.size(); ++i)
         if (tile == nullptr || tile->inner[i]) largest = std::max(largest, factors[i]);

@@ -144,7 +144,7 @@ double largestEigenvalue(const Laplacian& laplacian) {
 
 Eigen::MatrixXd applyInBasis(const HarmonicBasis& basis, const Laplacian& laplacian,
                              const Gain& gain, double residualGain, const Eigen::MatrixXd& X) {
-    const Eigen::MatrixXd means = laplacian.constants.means(X);
+    const Eigen::MatrixXd means = laplacian.constants.means(laplacian.D, X);
     Eigen::MatrixXd centred = X;
     laplacian.constants.add(-means, centred);
 
@@ -153,7 +153,7 @@ Eigen::MatrixXd applyInBasis(const HarmonicBasis& basis, const Laplacian& laplac
     for (Index i = 0; i < basis.size(); ++i)
         c.row(i) *= gain(std::sqrt(std::max(0.0, basis.lambda[i]))) - residualGain;
     Eigen::MatrixXd Y = residualGain * centred + basis.inverseTransform(c);
-    laplacian.constants.remove(Y);
+    laplacian.constants.remove(laplacian.D, Y);
     laplacian.constants.add(means, Y);
     return Y;
 }

@@ -44,7 +44,7 @@ class DeflatedResolvent {
         stopPoint_();
         Eigen::VectorXd u = x.cwiseQuotient(sqrtD_);
         factor_.applyResolvent(D_, u);
-        constants_.remove(u);
+        constants_.remove(D_, u);
         u -= known_ * (known_.transpose() * D_.cwiseProduct(u)).eval();
         return half_ * u.cwiseProduct(sqrtD_);
     }
@@ -112,7 +112,7 @@ IntervalPairs computeInterval(const Laplacian& laplacian, const SpectralInterval
         Eigen::MatrixXd U = D.cwiseSqrt().cwiseInverse().asDiagonal() * nearest.vectors;
         // One more inverse iteration reduces the error outside the Krylov space.
         factor.applyResolvent(D, U);
-        laplacian.constants.remove(U);
+        laplacian.constants.remove(laplacian.D, U);
         if (orthonormalize(D, known, U) < kOwnPart) return {};
         append(known, U);
         append(lambda, factor.shift() + half * nearest.values.array().inverse());

@@ -255,7 +255,7 @@ std::vector<FullSpectrumResult> applyFullSpectrum(const Laplacian& laplacian,
         furthest = std::clamp(done, furthest, 1.0);  // the estimate may increase
     }
 
-    const Eigen::MatrixXd means = constants.means(X);
+    const Eigen::MatrixXd means = constants.means(D, X);
     for (std::size_t g = 0; g < gains.size(); ++g) {
         FullSpectrumResult& result = results[g];
         // In an invariant space, round-off is the only error.
@@ -272,7 +272,7 @@ std::vector<FullSpectrumResult> applyFullSpectrum(const Laplacian& laplacian,
     for (std::size_t g = 0; g < gains.size(); ++g) {
         FullSpectrumResult& result = results[g];
         result.Y = std::move(Y[g]);
-        constants.remove(result.Y);
+        constants.remove(D, result.Y);
         constants.add(means, result.Y);
     }
     return results;

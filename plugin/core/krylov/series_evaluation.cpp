@@ -176,7 +176,8 @@ class Terms {
         for (const GainSeries& gain : series)
             while (!isLast(gain, last)) ++last;
         before_.assign(newest_.size(), Values::Zero());
-        sums_.assign(series.size(), Rows(newest_.size(), Values::Zero()));
+        sums_.resize(series.size());
+        for (Rows& sum : sums_) sum.assign(newest_.size(), Values::Zero());
         for (int k = 1;; ++k) {
             progress.report(std::min(1.0, static_cast<double>(k) / last), "filtering");
             largest = std::max(largest, unit_ * next(k, series));
@@ -230,7 +231,7 @@ class Terms {
         Eigen::MatrixXd T0(count_, columns);
         for (Index i = 0; i < count_; ++i)
             for (Index c = 0; c < columns; ++c) T0(i, c) = unit_ * newest_[operator_.rowOf(i)][c];
-        const Eigen::MatrixXd means = laplacian.constants.means(T0);
+        const Eigen::MatrixXd means = laplacian.constants.means(laplacian.D, T0);
         details_.roundOff = (laplacian.constants.masses().cwiseSqrt().asDiagonal() * means).norm() /
                             std::max(details_.shape, std::numeric_limits<double>::min());
     }
@@ -306,7 +307,7 @@ std::optional<std::vector<FullSpectrumResult>> evaluate(
                  bytes = Operator::kBytesOfRow + sizeof(typename Operator::Values) * (2.0 + count) +
                          sizeof(double) * static_cast<double>(X.cols()) * count;
     requireMemory(bytes * static_cast<double>(X.rows()), X.rows());
-    const Centred centred(X, laplacian.constants);
+    const Centred centred(X, laplacian);
     Terms<Operator> terms(laplacian, S, X, centred);
     const Details& details = terms.details();
     if (!(details.largestEntry > 0.0))
@@ -346,7 +347,8 @@ std::optional<std::vector<FullSpectrumResult>> evaluate(
                     result.Y(i, c) = series[g].atZero * centred(i, c) + terms.sum(g, i, c);
         });
         terms.release(g);
-        laplacian.constants.add(centred.means() - laplacian.constants.means(result.Y), result.Y);
+        laplacian.constants.add(centred.means() - laplacian.constants.means(laplacian.D, result.Y),
+                                result.Y);
         result.dimension = length;
         result.errorEstimate =
             errors.truncation(series[g], length, largest) + errors.others(series[g], largest);

@@ -18,8 +18,10 @@ inline constexpr double kRoundOff = 1e-15;
 /// Signals X (n x c) without the means of their components.
 class Centred {
   public:
-    Centred(const Signals& X, const ConstantModes& constants)
-        : X_(X), label_(constants.label()), means_(constants.means(X)) {}
+    Centred(const Signals& X, const Laplacian& laplacian)
+        : X_(X),
+          label_(laplacian.constants.label()),
+          means_(laplacian.constants.means(laplacian.D, X)) {}
     double operator()(Index i, Index c) const {
         return label_[i] < 0 ? X_(i, c) : X_(i, c) - means_(label_[i], c);
     }
@@ -37,39 +39,30 @@ class Centred {
 /// S = A / largest. Of differences, so that constants stay exactly 0.
 template <class Scalar, int Columns>
 class Product {
-    /// An off-diagonal entry of 2 D^-1 W / largest, in the precision of the terms.
-    struct Entry {
-        Scalar weight;
-        int row;
-    };
-
   public:
     using Values = Eigen::Array<Scalar, Columns, 1>;
     using Detail = Eigen::Array<double, Columns, 1>;
     static constexpr double kRoundOffOfTerm = std::is_same_v<Scalar, float> ? 6e-8 : kRoundOff;
     static constexpr bool kKeepsConstants = true;
-    static constexpr double kBytesOfRow = 6.0 * sizeof(Entry);
+    static constexpr double kBytesOfRow = 7.0 * sizeof(Scalar);
 
     Product(const Laplacian& laplacian, const KrylovOperator& S, const Signals& X, const Centred&)
         : laplacian_(laplacian), X_(X), largest_(S.lastFrequency() * S.lastFrequency()) {
         const SparseMatrix& W = laplacian.W;  // symmetric: its columns are its rows
         if (laplacian.constants.label().minCoeff() < 0)
             excess_ = W * Eigen::VectorXd::Ones(W.rows());
-        entries_.resize(static_cast<std::size_t>(W.nonZeros() - W.rows()));
+        weights_.resize(static_cast<std::size_t>(W.nonZeros()));
         parallelRows(W.rows(), [&](Index begin, Index end) {
             for (Index i = begin; i < end; ++i) {
-                Entry* next = entries_.data() + (W.outerIndexPtr()[i] - i);  // none on points
-                for (SparseMatrix::InnerIterator entry(W, i); entry; ++entry)
-                    if (entry.row() != i)
-                        *next++ = {
-                            static_cast<Scalar>(2.0 / (largest_ * laplacian.D[i]) * entry.value()),
-                            static_cast<int>(entry.row())};
+                const double factor = 2.0 / (largest_ * laplacian.D[i]);
+                for (Index k = W.outerIndexPtr()[i]; k < W.outerIndexPtr()[i + 1]; ++k)
+                    weights_[k] = static_cast<Scalar>(factor * W.valuePtr()[k]);
             }
         });
     }
 
     Index rowOf(Index vertex) const { return vertex; }
-    void release() { std::vector<Entry>().swap(entries_); }  ///< Frees memory: no more terms.
+    void release() { std::vector<Scalar>().swap(weights_); }  ///< Frees memory: no more terms.
 
     /// Row i of S X, to double precision.
     Detail detail(Index i) const {
@@ -87,13 +80,13 @@ class Product {
 
     /// Maps i to row i of 2 S T.
     auto twice(const Values* T) const {
-        return [T, starts = laplacian_.W.outerIndexPtr(), entries = entries_.data(),
+        return [T, starts = laplacian_.W.outerIndexPtr(), rows = laplacian_.W.innerIndexPtr(),
+                weights = weights_.data(),
                 excess = excess_.size() > 0 ? this : nullptr](Index i) -> Values {
             const Values here = T[i];
             Values sum = Values::Zero();
-            const Entry* const end = entries + (starts[i + 1] - i - 1);
-            for (const Entry* e = entries + (starts[i] - i); e != end; ++e)
-                sum += e->weight * (T[e->row] - here);
+            for (auto k = starts[i], end = starts[i + 1]; k != end; ++k)
+                sum += weights[k] * (T[rows[k]] - here);  // 0 on the diagonal
             if (excess != nullptr) sum += excess->ofExcess(i) * here;
             return sum;
         };
@@ -107,8 +100,8 @@ class Product {
     const Laplacian& laplacian_;
     const Signals& X_;
     double largest_;
-    std::vector<Entry> entries_;  // of the columns of W, each without its diagonal
-    Eigen::VectorXd excess_;      // row sums of W, if there is a fixed boundary
+    std::vector<Scalar> weights_;  // the entries of 2 D^-1 W / largest, in the order of W's
+    Eigen::VectorXd excess_;       // row sums of W, if there is a fixed boundary
 };
 
 /// S / theta_max of a ShiftInvert; rows are in the order of S.

@@ -7,8 +7,8 @@
 namespace spectral {
 
 ConstantModes::ConstantModes(const Components& components, const Eigen::VectorXd& D)
-    : label_(components.label), D_(D), mass_(Eigen::VectorXd::Zero(components.count)) {
-    isWhole_ = count() == 1 && label_.minCoeff() == 0;
+    : label_(components.label), mass_(Eigen::VectorXd::Zero(components.count)) {
+    isWhole_ = count() == 1 && label_->minCoeff() == 0;
     if (isWhole_)
         mass_[0] = D.sum();
     else
@@ -16,12 +16,13 @@ ConstantModes::ConstantModes(const Components& components, const Eigen::VectorXd
             if (label_[i] >= 0) mass_[label_[i]] += D[i];
 }
 
-Eigen::MatrixXd ConstantModes::means(const Eigen::Ref<const Eigen::MatrixXd>& X) const {
-    if (isWhole_) return D_.transpose() * X / mass_[0];
+Eigen::MatrixXd ConstantModes::means(const Eigen::VectorXd& D,
+                                     const Eigen::Ref<const Eigen::MatrixXd>& X) const {
+    if (isWhole_) return D.transpose() * X / mass_[0];
     Eigen::MatrixXd sums = Eigen::MatrixXd::Zero(mass_.size(), X.cols());
     for (Index c = 0; c < X.cols(); ++c)
         for (Index i = 0; i < X.rows(); ++i)
-            if (label_[i] >= 0) sums(label_[i], c) += D_[i] * X(i, c);
+            if (label_[i] >= 0) sums(label_[i], c) += D[i] * X(i, c);
     return mass_.cwiseInverse().asDiagonal() * sums;
 }
 
@@ -38,8 +39,8 @@ void ConstantModes::add(const Eigen::MatrixXd& means, Eigen::Ref<Eigen::MatrixXd
 }
 
 Eigen::MatrixXd ConstantModes::orthonormal() const {
-    Eigen::MatrixXd modes = Eigen::MatrixXd::Zero(label_.size(), mass_.size());
-    for (Index i = 0; i < label_.size(); ++i)
+    Eigen::MatrixXd modes = Eigen::MatrixXd::Zero(label_->size(), mass_.size());
+    for (Index i = 0; i < label_->size(); ++i)
         if (label_[i] >= 0) modes(i, label_[i]) = 1.0 / std::sqrt(mass_[label_[i]]);
     return modes;
 }

@@ -19,24 +19,27 @@ class ConstantModes {
 
     int count() const { return static_cast<int>(mass_.size()); }
 
-    const Eigen::VectorXi& label() const { return label_; }  ///< n, -1 at vertices without a mode.
-    const Eigen::VectorXd& masses() const { return mass_; }  ///< Sum of D over each component.
+    const Eigen::VectorXi& label() const { return *label_; }  ///< n, -1 at vertices without a mode.
+    const Eigen::VectorXd& masses() const { return mass_; }   ///< Sum of D over each component.
 
     /// D-weighted mean of every column of X (n x c) on every component: count x c.
-    Eigen::MatrixXd means(const Eigen::Ref<const Eigen::MatrixXd>& X) const;
+    /// @param D  the masses, here as well.
+    Eigen::MatrixXd means(const Eigen::VectorXd& D,
+                          const Eigen::Ref<const Eigen::MatrixXd>& X) const;
 
     /// Adds to every row of X (n x c) the means (count x c) of its component.
     void add(const Eigen::MatrixXd& means, Eigen::Ref<Eigen::MatrixXd> X) const;
 
     /// D-orthogonal projection of X onto the complement of the constants, in place.
-    void remove(Eigen::Ref<Eigen::MatrixXd> X) const { add(-means(X), X); }
+    void remove(const Eigen::VectorXd& D, Eigen::Ref<Eigen::MatrixXd> X) const {
+        add(-means(D, X), X);
+    }
 
     /// The D-orthonormal modes, n x count: 1/sqrt(mass) on one component, 0 elsewhere.
     Eigen::MatrixXd orthonormal() const;
 
   private:
-    Eigen::VectorXi label_;
-    Eigen::VectorXd D_;
+    Labels label_;
     Eigen::VectorXd mass_;
     bool isWhole_ = false;  // a single mode on all vertices, the usual case
 };

@@ -22,10 +22,10 @@ HarmonicExtension::Remainder HarmonicExtension::remainder(const Laplacian& surfa
                                                           const Eigen::MatrixXd& X) {
     // W_II is singular on components without fixed vertices: adding masses there, and only there,
     // makes it definite. On these components H is the mean, not the solution.
-    const Eigen::VectorXd D = (interior_.components().label.array() < 0).select(0.0, inside.D);
+    const Eigen::VectorXd D = (interior_.components().label->array() < 0).select(0.0, inside.D);
     ldlt_.factorizeDefinite(inside.W, D, 4.0 * kPi / surface.D.sum());
     Eigen::MatrixXd centred = X;
-    surface.constants.remove(centred);
+    surface.constants.remove(surface.D, centred);
 
     // X - H = W_II^-1 (W X)_I: no cancellation where X is nearly harmonic. A second solve, for the
     // residual of the first, matters for needle triangles.

@@ -1,5 +1,6 @@
 #include "core/laplacian/interior.h"
 
+#include <algorithm>
 #include <utility>
 
 #include "core/mesh/sides.h"
@@ -20,11 +21,16 @@ std::vector<bool> fixedVerticesOf(const Faces& F, Index vertexCount, Boundary bo
 }
 
 Interior::Interior(const Faces& F, Components components, Boundary boundary)
-    : Interior(components, fixedVerticesOf(F, components.label.size(), boundary)) {}
+    : Interior(components, fixedVerticesOf(F, components.label->size(), boundary)) {}
 
 Interior::Interior(Components components, const std::vector<bool>& fixed)
     : surfaceComponents_(std::move(components)) {
-    const Eigen::VectorXi& label = surfaceComponents_.label;
+    const Eigen::VectorXi& label = *surfaceComponents_.label;
+    size_ = label.size() - std::count(fixed.begin(), fixed.end(), true);
+    if (isWhole()) {
+        components_ = surfaceComponents_;
+        return;
+    }
     std::vector<bool> hasFixed(static_cast<std::size_t>(surfaceComponents_.count), false);
     for (Index i = 0; i < label.size(); ++i) {
         if (fixed[i])
@@ -36,8 +42,9 @@ Interior::Interior(Components components, const std::vector<bool>& fixed)
     std::vector<int> number(hasFixed.size(), -1);
     for (std::size_t c = 0; c < hasFixed.size(); ++c)
         if (!hasFixed[c]) number[c] = components_.count++;
-    components_.label.resize(size());
-    for (Index i = 0; i < size(); ++i) components_.label[i] = number[label[vertex_[i]]];
+    Eigen::VectorXi inside(size());
+    for (Index i = 0; i < size(); ++i) inside[i] = number[label[vertex_[i]]];
+    components_.label = std::move(inside);
 }
 
 Laplacian Interior::restricted(const Laplacian& surface) const {
@@ -58,6 +65,7 @@ Laplacian Interior::restricted(const Laplacian& surface) const {
 }
 
 Eigen::MatrixXd Interior::restricted(const Eigen::MatrixXd& X) const {
+    if (isWhole()) return X;
     Eigen::MatrixXd rows(size(), X.cols());
     for (Index i = 0; i < size(); ++i) rows.row(i) = X.row(vertex_[i]);
     return rows;

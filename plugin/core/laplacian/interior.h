@@ -34,8 +34,8 @@ class Interior {
     /// @param fixed  n, whether each vertex is fixed.
     Interior(Components components, const std::vector<bool>& fixed);
 
-    Index size() const { return static_cast<Index>(vertex_.size()); }
-    Index fixedVertices() const { return surfaceComponents_.label.size() - size(); }
+    Index size() const { return size_; }
+    Index fixedVertices() const { return surfaceComponents_.label->size() - size_; }
     bool isWhole() const { return fixedVertices() == 0; }
 
     /// Labels of the interior vertices on components without fixed vertices, which have a constant
@@ -53,12 +53,13 @@ class Interior {
 
     /// Extends values at interior vertices to the surface by zero: n x c.
     Eigen::MatrixXd extended(Eigen::MatrixXd values) const {
-        return extendedByZero(std::move(values), vertex_, surfaceComponents_.label.size());
+        return extendedByZero(std::move(values), vertex_, surfaceComponents_.label->size());
     }
 
   private:
     Components surfaceComponents_;
-    std::vector<Index> vertex_;  // surface vertex of each row of the interior, ascending
+    Index size_ = 0;
+    std::vector<Index> vertex_;  // surface vertex of each row of the interior, unless it is whole
     Components components_;
 };
 

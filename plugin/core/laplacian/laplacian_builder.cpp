@@ -17,17 +17,16 @@ void checkMesh(const Vertices& V, const Faces& F, LaplacianKind kind) {
 
 LaplacianBuilder::LaplacianBuilder(const Surface& surface, Components components,
                                    LaplacianKind kind, BasisUpdate update, double conformalShare,
-                                   const SidesByEdge* edges)
+                                   std::optional<SidesByEdge> edges)
     : surface_(surface),
       components_(std::move(components)),
       kind_(kind),
       update_(update),
       conformalShare_(conformalShare) {
     if (kind == LaplacianKind::IntrinsicDelaunay) {
-        if (edges != nullptr)
-            intrinsic_.emplace(surface.X, surface.F, *edges);
-        else
-            intrinsic_.emplace(surface.X, surface.F);
+        if (!edges) edges.emplace(surface.F);
+        intrinsic_.emplace(surface.X, surface.F, *edges);
+        edges.reset();  // memory that lengths and cotangents need
     }
     // Unless W is updated, its topology ends with it.
     current_.W = intrinsic_ && update != BasisUpdate::Full

@@ -38,7 +38,7 @@ class LaplacianBuilder {
     /// @param edges  of surface.F, if they are known.
     LaplacianBuilder(const Surface& surface, Components components, LaplacianKind kind,
                      BasisUpdate update, double conformalShare = 0.0,
-                     const SidesByEdge* edges = nullptr);
+                     std::optional<SidesByEdge> edges = {});
 
     const Laplacian& current() const { return current_; }
 

@@ -127,7 +127,8 @@ Parting partingOf(const Vertices& V, const Faces& F, const Vertices& moved, doub
     constexpr double kCell = 4.0;       // in `near`
     constexpr int kMostVertices = 500;  // of a cell: all pairs are compared
     const Surface surface = joinedSurface(V, F);
-    const auto [label, count] = connectedComponents(surface.F, surface.X.rows());
+    const Components components = connectedComponents(surface.F, surface.X.rows());
+    const auto& [label, count] = components;
     Parting parting;
     parting.all = count;
     if (count < 2) return parting;

@@ -12,7 +12,7 @@
 
 namespace spectral {
 
-Surface surfaceOf(const Vertices& V, const Faces& F) {
+Surface surfaceOf(const VerticesView& V, const FacesView& F) {
     Surface surface;
     surface.F.resize(F.rows(), 3);
     std::vector<int> packed(static_cast<std::size_t>(V.rows()), -1);
@@ -24,12 +24,13 @@ Surface surfaceOf(const Vertices& V, const Faces& F) {
     }
     surface.F.conservativeResize(triangles, 3);
 
+    surface.vertex.reserve(packed.size() - std::count(packed.begin(), packed.end(), -1));
     for (Index i = 0; i < V.rows(); ++i)
         if (packed[i] == 0) {
             packed[i] = static_cast<int>(surface.vertex.size());
             surface.vertex.push_back(i);
         }
-    surface.F = surface.F.unaryExpr([&](int i) { return packed[i]; }).eval();
+    for (int& i : surface.F.reshaped()) i = packed[i];
 
     surface.X.resize(static_cast<Index>(surface.vertex.size()), 3);
     for (Index i = 0; i < surface.X.rows(); ++i) surface.X.row(i) = V.row(surface.vertex[i]);
@@ -109,7 +110,7 @@ void removeFlatComponents(Surface& surface) {
 }
 
 /// joinedSurface without its edges, unless they are those of what is cut.
-std::pair<Surface, std::optional<SidesByEdge>> joined(const Vertices& V, const Faces& F) {
+std::pair<Surface, std::optional<SidesByEdge>> joined(const VerticesView& V, const FacesView& F) {
     Surface cut = surfaceOf(V, F);
     removeFlatComponents(cut);
     SidesByEdge edges(cut.F);
@@ -146,9 +147,9 @@ std::pair<Surface, std::optional<SidesByEdge>> joined(const Vertices& V, const F
 
 }  // namespace
 
-Surface joinedSurface(const Vertices& V, const Faces& F) { return joined(V, F).first; }
+Surface joinedSurface(const VerticesView& V, const FacesView& F) { return joined(V, F).first; }
 
-SurfaceWithEdges joinedSurfaceWithEdges(const Vertices& V, const Faces& F) {
+SurfaceWithEdges joinedSurfaceWithEdges(const VerticesView& V, const FacesView& F) {
     auto [surface, edges] = joined(V, F);
     if (!edges) edges.emplace(surface.F);
     return {std::move(surface), *std::move(edges)};
@@ -240,12 +241,13 @@ Components connectedComponents(const Faces& F, Index vertexCount) {
         sets.unite(F(t, 0), F(t, 2));
     }
     // Components are numbered by their first vertices, which are the roots.
-    Components components{Eigen::VectorXi(vertexCount), 0};
+    Eigen::VectorXi label(vertexCount);
+    int count = 0;
     for (int i = 0; i < vertexCount; ++i) {
         const int first = sets.root(i);
-        components.label[i] = first == i ? components.count++ : components.label[first];
+        label[i] = first == i ? count++ : label[first];
     }
-    return components;
+    return {std::move(label), count};
 }
 
 }  // namespace spectral

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <memory>
+#include <utility>
 #include <vector>
 
 #include "core/mesh/mesh.h"
@@ -29,11 +31,11 @@ struct Surface {
 
 /// The triangles with three distinct corners, and their vertices, renumbered. Unreferenced vertices
 /// are dropped.
-Surface surfaceOf(const Vertices& V, const Faces& F);
+Surface surfaceOf(const VerticesView& V, const FacesView& F);
 
 /// The same, with the vertices along seams joined: each row of X is the first such vertex of the
 /// mesh, the others are its copies. Components without area are left out, unless all are.
-Surface joinedSurface(const Vertices& V, const Faces& F);
+Surface joinedSurface(const VerticesView& V, const FacesView& F);
 
 /// The same with the edges of its triangles, which seams are found by: their sorting takes longer
 /// than most passes over a mesh.
@@ -41,7 +43,7 @@ struct SurfaceWithEdges {
     Surface surface;
     SidesByEdge edges;  ///< Of surface.F.
 };
-SurfaceWithEdges joinedSurfaceWithEdges(const Vertices& V, const Faces& F);
+SurfaceWithEdges joinedSurfaceWithEdges(const VerticesView& V, const FacesView& F);
 
 /// Restricts values at the vertices of a mesh to its surface; at a seam, to the mean of the copies.
 /// @param values  one row per vertex of the mesh.
@@ -85,9 +87,21 @@ struct SurfaceCounts {
 /// @param fixed  number of vertices of the surface that must not move.
 SurfaceCounts countsOf(const Surface& surface, Index n, int components, Index fixed);
 
+/// n integers, which all copies share.
+class Labels {
+  public:
+    Labels(Eigen::VectorXi all = {}) : all_(std::make_shared<Eigen::VectorXi>(std::move(all))) {}
+    int operator[](Index i) const { return (*all_)[i]; }
+    const Eigen::VectorXi& operator*() const { return *all_; }
+    const Eigen::VectorXi* operator->() const { return all_.get(); }
+
+  private:
+    std::shared_ptr<const Eigen::VectorXi> all_;
+};
+
 /// The connected components of a surface: triangles that share a vertex are connected.
 struct Components {
-    Eigen::VectorXi label;  ///< n labels, 0 <= label < count; -1: no component.
+    Labels label;  ///< n labels, 0 <= label < count; -1: no component.
     int count = 0;
 };
 

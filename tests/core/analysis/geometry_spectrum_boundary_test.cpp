@@ -35,10 +35,10 @@ TEST(GeometrySpectrumWithFixedBoundary, AgreesWithAllEigenvectorsOfTheInterior) 
         const Interior interior(mesh.F, components, Boundary::Fixed);
         const Laplacian inside = interior.restricted(A);
         Eigen::MatrixXd centred = mesh.V;
-        A.constants.remove(centred);
+        A.constants.remove(A.D, centred);
         const Eigen::MatrixXd WX = interior.restricted(Eigen::MatrixXd(A.W * centred));
         Eigen::MatrixXd U = testing::denseSolution(Eigen::MatrixXd(inside.W), WX);
-        inside.constants.remove(U);
+        inside.constants.remove(inside.D, U);
         const Eigen::VectorXd energies =
             testing::innerProducts(denseBasis(inside).Phi, inside.D, U).rowwise().squaredNorm();
         const GeometrySpectrum spectrum =

@@ -25,7 +25,7 @@ std::vector<std::string> textsOf(const Warnings& warnings) {
 }
 
 FilterInput sphere() {
-    const testing::Mesh mesh = testing::icosphere(3);
+    static const testing::Mesh mesh = testing::icosphere(3);
     FilterInput input{mesh.V, mesh.F};
     input.values = Eigen::VectorXd::LinSpaced(mesh.V.rows(), 0.0, 1.0);
     return input;
@@ -139,8 +139,8 @@ TEST(Filters, RefuseUnknownAndWrongValuesByName) {
 
 TEST(Filters, AdviseWithoutChangingTheClassOfAnError) {
     const Filter& filter = filterNamed(kFractional);
-    FilterInput points = sphere();
-    points.F.resize(0, 3);
+    const Faces none(0, 3);
+    const FilterInput points{sphere().V, none};
     try {
         apply(filter, points, {});
         FAIL();

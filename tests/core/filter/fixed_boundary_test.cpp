@@ -83,7 +83,7 @@ class DenseFilter {
             const auto [lambda, Phi] = testing::denseEigenpairs(W_II, D);
             Eigen::MatrixXd H_I(I.size(), 3);
             if (B.empty()) {
-                H_I.rowwise() = Eigen::RowVector3d(A.constants.means(mesh.V).row(c));
+                H_I.rowwise() = Eigen::RowVector3d(A.constants.means(A.D, mesh.V).row(c));
             } else {
                 const Eigen::MatrixXd W_IB = W(I, B), V_B = mesh.V(B, Eigen::indexing::all);
                 H_I = -testing::denseSolution(W_II, W_IB * V_B);
@@ -138,8 +138,8 @@ TEST(Interior, HasConstantModesOfClosedComponentsOnly) {
     EXPECT_EQ(interior.size(), 4 + 12);
     EXPECT_EQ(interior.fixedVertices(), 12);
     EXPECT_EQ(interior.components().count, 1);
-    EXPECT_TRUE((interior.components().label.head(4).array() == -1).all());
-    EXPECT_TRUE((interior.components().label.tail(12).array() == 0).all());
+    EXPECT_TRUE((interior.components().label->head(4).array() == -1).all());
+    EXPECT_TRUE((interior.components().label->tail(12).array() == 0).all());
 }
 
 /// Worst relative error of the 15 lowest eigenvalues pi^2 (p^2/a^2 + q^2/b^2), p, q >= 1.

@@ -139,7 +139,9 @@ TEST(FullSpectrum, KeepsConstantModesWhateverTheGainAtZero) {
     for (const double gainAtAll : {0.0, 3.0}) {
         const FullSpectrumResult result =
             testing::filteredFullSpectrum(A, [&](double) { return gainAtAll; }, 1.0, 1e-9);
-        EXPECT_LT((A.constants.means(result.Y) - A.constants.means(A.mesh.V)).cwiseAbs().maxCoeff(),
+        EXPECT_LT((A.constants.means(A.D, result.Y) - A.constants.means(A.D, A.mesh.V))
+                      .cwiseAbs()
+                      .maxCoeff(),
                   1e-13);
     }
 }

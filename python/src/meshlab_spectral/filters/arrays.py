@@ -62,7 +62,7 @@ def mesh_arrays(
     if F.size and (F.min() < 0 or F.max() >= len(V)):
         wrong = F.min() if F.min() < 0 else F.max()
         raise ArrayError(f"a face refers to vertex {wrong}, but there are {len(V)} vertices")
-    return V, F.astype(np.int32)
+    return V, F.astype(np.int32, copy=False)
 
 
 def real_numbers(values: Any, name: str) -> NDArray[np.float64]:
