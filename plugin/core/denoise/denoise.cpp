@@ -196,10 +196,10 @@ Points denoisePart(const MovingPart& part, const FaceGraph& graph, const Denoise
 
 /// Height of the noise at every vertex of the part, as given or else as measured; 0: none.
 Eigen::VectorXd heightsOf(const Diagnosis& diagnosis, const DenoiseOptions& options, Index n) {
-    if (diagnosis.field.isAny()) return diagnosis.field.height;
     const bool isKnown = options.noiseHeight > 0.0;
-    Eigen::VectorXd heights =
-        Eigen::VectorXd::Constant(n, isKnown ? options.noiseHeight : diagnosis.rmsHeight());
+    Eigen::VectorXd heights = diagnosis.field.height;
+    if (!diagnosis.field.isAny())
+        heights.setConstant(n, isKnown ? options.noiseHeight : diagnosis.rmsHeight());
     for (std::size_t i = 0; i < diagnosis.isClean.size(); ++i)
         if (diagnosis.isClean[i]) heights[static_cast<Index>(i)] = 0.0;
     return heights;
@@ -209,6 +209,8 @@ Eigen::VectorXd heightsOf(const Diagnosis& diagnosis, const DenoiseOptions& opti
 Eigen::VectorXd offsetWeight(Eigen::VectorXd weight, const MovingPart& part,
                              const Diagnosis& diagnosis) {
     const NoiseField& field = diagnosis.field;
+    for (std::size_t i = 0; i < diagnosis.isClean.size(); ++i)
+        if (diagnosis.isClean[i]) weight[part.surface.vertex[static_cast<Index>(i)]] = 0.0;
     if (field.isAlike()) return weight;  // to the bit as without a field
     for (Index i = 0; i < field.height.size(); ++i)
         weight[part.surface.vertex[i]] *=

@@ -273,7 +273,7 @@ Diagnosis diagnoseWhole(const FaceGraph& graph, const Points& X,
         return diagnosis;
     if (!noise.isUnderShape) noise.height *= noiseShare(correlation);
     // The steps of voxels are flat, too, but do not alternate.
-    if (isWhite) addFlatParts(graph, X, diagnosis.isClean);
+    if (isWhite || correlation < 0.0) addFlatParts(graph, X, diagnosis.isClean);
     diagnosis.kind = noise.height < kMinHeight * edge ? NoiseKind::None
                      : found.areTail                  ? NoiseKind::Impulses
                                                       : NoiseKind::White;
@@ -337,6 +337,7 @@ Diagnosis diagnose(const FaceGraph& graph, const Points& X, const std::vector<bo
     if (field.isAny()) {
         for (std::size_t i = 0; i < diagnosis.isClean.size(); ++i)
             if (diagnosis.isClean[i]) field.height[static_cast<Index>(i)] = 0.0;
+        addFlatParts(graph, X, diagnosis.isClean);
         diagnosis.field = std::move(field);
         diagnosis.kind = NoiseKind::Local;
         diagnosis.noise.size = 1.0;
