@@ -134,6 +134,15 @@ def test_values_without_a_surface_are_refused_with_the_file_to_pass(tmp_path: Pa
         read(curvature)
 
 
+def test_free_surfers_empty_line_may_be_missing(pial: Path) -> None:
+    data = pial.read_bytes().replace(b"\n\n", b"\n", 1)  # as CAT writes it, and FreeSurfer reads
+    pial.write_bytes(data)
+    document = read(pial)
+    np.testing.assert_array_equal(document.parts[0].vertices, V)
+    document.save(pial.with_name("same.pial"), [V])
+    assert pial.with_name("same.pial").read_bytes() == data
+
+
 @pytest.mark.parametrize(
     ("old", "new"),
     [

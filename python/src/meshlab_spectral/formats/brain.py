@@ -83,8 +83,10 @@ class _FreeSurfer(Document):
 
 def _read_free_surfer(path: Path) -> Document:
     data = path.read_bytes()
-    begin = data.find(b"\n", data.find(b"\n") + 1) + 9  # after two lines and two counts
-    if not 9 < begin <= len(data):
+    second = data.find(b"\n") + 1
+    # After a line, two counts; most writers put an empty line between, which FreeSurfer skips.
+    begin = second + data.startswith(b"\n", second) + 8
+    if second == 0 or begin > len(data):
         raise EndsEarlyError("it ends before its counts")
     n, m = np.frombuffer(data, ">i4", 2, begin - 8).tolist()
     tail = begin + 12 * (n + m)
