@@ -248,8 +248,10 @@ Diagnosis diagnoseWhole(const FaceGraph& graph, const Points& X,
     progress.report(0.6, kStage);
     const Points N = smoothVertexNormals(graph, diagnosis.X);
     const double correlation = residualCorrelation(graph, diagnosis.X, N, isMeasured);
-    const SecondResiduals second = secondResiduals(graph, diagnosis.X, N, isMeasured);
-    const bool isWhite = second.isNoise(correlation, edge);
+    SecondResiduals second = secondResiduals(graph, diagnosis.X, N, isMeasured);
+    second.areEven = !second.isNoise(correlation, edge) &&
+                     isEvenNoise(graph, diagnosis.X, N, isMeasured, second);
+    const bool isWhite = second.areEven || second.isNoise(correlation, edge);
     NoiseEstimate& noise = diagnosis.noise;
     diagnosis.kind = NoiseKind::Shape;
     const bool isCorrelated = !isWhite && correlation >= kMaxCorrelationOfNoise;
@@ -271,7 +273,7 @@ Diagnosis diagnoseWhole(const FaceGraph& graph, const Points& X,
     if (!isWhite && !noise.isUnderShape && noise.height < kHighNoise * edge &&
         !hasManySpikes(diagnosis))
         return diagnosis;
-    if (!noise.isUnderShape) noise.height *= noiseShare(correlation);
+    if (!noise.isUnderShape && !second.areEven) noise.height *= noiseShare(correlation);
     // The steps of voxels are flat, too, but do not alternate.
     if (isWhite || correlation < 0.0) addFlatParts(graph, X, diagnosis.isClean);
     diagnosis.kind = noise.height < kMinHeight * edge ? NoiseKind::None

@@ -61,6 +61,7 @@ Eigen::VectorXd scaledSecondResiduals(const FaceGraph& graph, const Points& X, c
 struct SecondResiduals {
     double height = 0.0;       ///< Standard deviation of the white noise that has these.
     double correlation = 1.0;  ///< Of neighbours; 1 if all vanish.
+    bool areEven = false;      ///< isEvenNoise, where they are not those of white noise.
 
     /// Whether they are those of white noise.
     /// @param firstCorrelation  result of residualCorrelation: weak noise must alternate there,
@@ -78,6 +79,13 @@ SecondResiduals secondResiduals(const FaceGraph& graph, const Points& X, const P
 /// less, alike everywhere, and have the distribution of noise.
 bool isCoarserNoise(const FaceGraph& graph, const Points& X, const Points& N,
                     const std::vector<bool>& isMeasured);
+
+/// Whether what alternates is noise, though it has not quite the correlation of white noise, such
+/// as that of a volume of distances, whose vertices slide on the edges of its grid: it is alike
+/// everywhere and has the distribution of noise.
+/// @param second  result of secondResiduals.
+bool isEvenNoise(const FaceGraph& graph, const Points& X, const Points& N,
+                 const std::vector<bool>& isMeasured, const SecondResiduals& second);
 
 /// Height and correlation length of the noise, from the energies along the normals in seven octaves
 /// of lazy diffusion, (I + P) / 2 to the powers 0, 1, 2, 4, ... 64.

@@ -11,7 +11,15 @@ import pymeshlab
 import pytest
 import pyvista
 from denoise_reference import Array, Reference, mean_edge, unit
-from helpers import assert_same, decorated, length, lower_part, mesh_set_of, refusal, snapshot
+from helpers import (
+    assert_same,
+    decorated,
+    length,
+    lower_part,
+    mesh_set_of,
+    refusal,
+    snapshot,
+)
 from meshlab_spectral import DenoiseOptions, OptionError, denoise_mesh
 from numpy.typing import NDArray
 from scipy.ndimage import gaussian_filter
@@ -177,7 +185,9 @@ def test_noise_in_a_region_is_removed_there_and_all_else_is_left_bit_for_bit_unc
     assert ", times 0.5; no noise found in the rest" in report["summary"]
 
 
-def test_nothing_found_says_what_to_try_in_lengths_of_the_mesh(decimated: Decimated) -> None:
+def test_nothing_found_says_what_to_try_in_lengths_of_the_mesh(
+    decimated: Decimated,
+) -> None:
     V, F = decimated("bunny.obj", 20000)
     edge = mean_edge(V, F)
     summary = denoise_mesh(V, F)[1]["summary"]
@@ -208,7 +218,9 @@ def test_a_cad_part_is_left_alone_and_never_crumpled() -> None:
 
 @pytest.mark.parametrize("axis", [0, 1, 2])
 @pytest.mark.parametrize(
-    "units", [(111e3, 1), (1e3, 1), (1, 0.01), (111e3, 0.3048)], ids=["degree", "km", "cm", "foot"]
+    "units",
+    [(111e3, 1), (1e3, 1), (1, 0.01), (111e3, 0.3048)],
+    ids=["degree", "km", "cm", "foot"],
 )
 def test_a_terrain_of_two_units_is_called_so(units: tuple[float, float], axis: int) -> None:
     """`units` are those of the plane and of the height, in metres."""
@@ -363,7 +375,11 @@ def test_every_other_attribute_survives(decimated: Decimated) -> None:
     report = mesh_set.apply_filter(DENOISE)
     assert report["max_displacement"] > 0
     after = snapshot(mesh_set.current_mesh())
-    positions_and_normals = ("vertex_matrix", "vertex_normal_matrix", "face_normal_matrix")
+    positions_and_normals = (
+        "vertex_matrix",
+        "vertex_normal_matrix",
+        "face_normal_matrix",
+    )
     for name in positions_and_normals:
         before.pop(name, None)
         after.pop(name, None)
@@ -414,3 +430,36 @@ def test_bad_options_are_refused(decimated: Decimated) -> None:
             denoise_mesh(V, F, **{name: "-2e"})
     given = length(1e-3)
     assert isinstance(given, pymeshlab.PureValue)
+
+
+def test_noise_in_a_volume_of_distances_is_removed() -> None:
+    """Of a tenth and a fifth of a voxel; its vertices slide on the edges of the grid."""
+    axis = np.linspace(-1.5, 1.5, 40)
+    voxel = axis[1] - axis[0]
+    x, y, z = np.meshgrid(axis, axis, axis, indexing="ij")
+    distances = np.sqrt((np.hypot(x, y) - 0.8) ** 2 + z**2) - 0.45
+
+    for height in (0.0, 0.1, 0.2):
+        noise = height * voxel * np.random.default_rng(4).standard_normal(distances.shape)
+        grid = pyvista.ImageData(
+            dimensions=distances.shape, spacing=(voxel,) * 3, origin=(-1.5,) * 3
+        )
+        grid["distance"] = (distances + noise).ravel(order="F")
+        surface = grid.contour([0.0], scalars="distance", method="marching_cubes").clean()
+        V, F = np.asarray(surface.points, float), surface.faces.reshape(-1, 4)[:, 1:]
+
+        X, report = denoise_mesh(V, F)
+
+        def error(Z: Array, F: NDArray[Any] = F) -> float:
+            C = Z[F].mean(axis=1)
+            around = np.hypot(C[:, 0], C[:, 1])
+            centre = 0.8 * np.column_stack([C[:, :2] / around[:, None], 0 * around])
+            cosine = np.abs((normals_of(Z, F) * unit(C - centre)).sum(axis=1))
+            return float(np.degrees(np.arccos(np.clip(cosine, 0, 1))).mean())
+
+        if height == 0:
+            np.testing.assert_array_equal(X, V)
+            continue
+        # Between two corners of variance 1, values have 2/3 on average.
+        assert report["noise_height"] == pytest.approx(np.sqrt(2 / 3) * height * voxel, rel=0.2)
+        assert error(X) < 0.8 * error(V)
