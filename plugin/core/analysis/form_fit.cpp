@@ -6,6 +6,7 @@
 #include <string>
 #include <utility>
 
+#include "core/support/dense_solvers.h"
 #include "core/support/errors.h"
 
 namespace spectral {
@@ -33,19 +34,21 @@ FittedShape fittedPlane(const Vertices& X, const Eigen::VectorXd& weights) {
 FittedShape algebraicFit(ShapeKind kind, const Row& axis, const Vertices& X,
                          const Eigen::VectorXd& weights) {
     FittedShape shape{kind, weights.transpose() * X / weights.sum(), axis};
-    Eigen::Matrix4d A = Eigen::Matrix4d::Zero();
-    Eigen::Vector4d b = Eigen::Vector4d::Zero();
+    // The mean of q is 0: centre and radius are found apart.
+    Eigen::Matrix3d A = Eigen::Matrix3d::Zero();
+    Eigen::Vector3d b = Eigen::Vector3d::Zero();
+    double squares = 0.0;
     for (Index i = 0; i < X.rows(); ++i) {
         const Row q = radial(shape, X.row(i));
-        const Eigen::Vector4d row(2.0 * q.x(), 2.0 * q.y(), 2.0 * q.z(), 1.0);
-        A += weights[i] * row * row.transpose();
-        b += weights[i] * q.squaredNorm() * row;
+        A += weights[i] * q.transpose() * q;
+        b += weights[i] * q.squaredNorm() * q.transpose();
+        squares += weights[i] * q.squaredNorm();
     }
-    // Of minimum norm: no part of the centre lies along the axis.
-    const Eigen::Vector4d solution = A.completeOrthogonalDecomposition().solve(b);
-    const Row centre = solution.head<3>().transpose();
+    // No part of the centre lies along the axis.
+    constexpr double kRoundOff = 4.0 * std::numeric_limits<double>::epsilon();
+    const Row centre = 0.5 * leastNormSolution(A, b, kRoundOff).transpose();
     shape.point += centre;
-    shape.radius = std::sqrt(std::max(0.0, solution[3] + centre.squaredNorm()));
+    shape.radius = std::sqrt(squares / weights.sum() + centre.squaredNorm());
     return shape;
 }
 

@@ -1,6 +1,6 @@
 #include "core/denoise/least_risk.h"
 
-#include <Eigen/Dense>
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -8,6 +8,7 @@
 #include "core/denoise/linear_steps.h"
 #include "core/graph/diffusion.h"
 #include "core/noise/noise_estimate.h"
+#include "core/support/dense_solvers.h"
 
 namespace spectral {
 
@@ -19,8 +20,6 @@ constexpr int kProbes = 5;
 using Rows = Probed<kProbes>;
 using Row = Eigen::Matrix<double, 1, 3 + kProbes>;
 using Basis = Eigen::Matrix<double, Eigen::Dynamic, kDegree>;
-using Gram = Eigen::Matrix<double, kDegree, kDegree>;
-using Coefficients = Eigen::Matrix<double, kDegree, 1>;
 
 /// Calls visit(j, (T_j(P) - 1) X), j from 1 to kDegree.
 template <class Visit>
@@ -37,16 +36,6 @@ void forEachPolynomial(const VertexGraph& graph, const Rows& X, const Visit& vis
     }
 }
 
-/// The solution of A c = b without the directions in which A is singular.
-Coefficients solved(const Gram& A, const Coefficients& b) {
-    constexpr double kSingular = 1e-10;
-    const Eigen::SelfAdjointEigenSolver<Gram> eigen(A);
-    const Coefficients& lambda = eigen.eigenvalues();
-    const Coefficients inverse =
-        (lambda.array() > kSingular * lambda[kDegree - 1]).select(lambda.cwiseInverse(), 0.0);
-    return eigen.eigenvectors() * (inverse.asDiagonal() * (eigen.eigenvectors().transpose() * b));
-}
-
 }  // namespace
 
 Points withLeastRisk(const FaceGraph& graph, const Points& X, const std::vector<bool>& mayMove,
@@ -56,13 +45,14 @@ Points withLeastRisk(const FaceGraph& graph, const Points& X, const std::vector<
     constexpr double kLeastAlike = 0.8, kMostAlike = 1.3;
     constexpr int kBlurs = 2;
     constexpr double kMaxTaken = 0.97;
+    constexpr double kSingular = 1e-10;
     const VertexGraph averaged = averagedNeighbours(graph, graph.vertices, mayMove);
     const Points N = smoothVertexNormals(graph, X, kBlurs);
     const Index n = X.rows();
     const Rows start = withProbes<kProbes>(X);
 
     Basis along(n, kDegree);
-    Coefficients trace;
+    Eigen::VectorXd trace(kDegree);
     double whiteSquares = 0.0;
     Eigen::Matrix3d squares;
     forEachPolynomial(averaged, start, [&](int j, const Rows& change) {
@@ -74,7 +64,8 @@ Points withLeastRisk(const FaceGraph& graph, const Points& X, const std::vector<
         whiteSquares = change.rightCols<kProbes>().squaredNorm() / kProbes;
     });
     const double variance = height * height;
-    const Coefficients c = solved(along.transpose() * along, -variance * trace);
+    const Eigen::VectorXd c =
+        leastNormSolution(along.transpose() * along, -variance * trace, kSingular);
     const Eigen::VectorXd change = along * c;
     // What is taken away is lower than the noise; if not, the given height is that of the shape.
     const double taken =
@@ -96,11 +87,11 @@ Points withLeastRisk(const FaceGraph& graph, const Points& X, const std::vector<
     forEachPolynomial(averaged, start, [&](int j, const Rows& all) {
         parts.emplace_back(all.leftCols<3>() - along.col(j - 1).asDiagonal() * N);
     });
-    Gram gram;
+    Eigen::MatrixXd gram(kDegree, kDegree);
     for (int j = 0; j < kDegree; ++j)
         for (int k = 0; k <= j; ++k)
             gram(j, k) = gram(k, j) = parts[j].cwiseProduct(parts[k]).sum();
-    const Coefficients d = solved(gram, -2.0 * variance * trace);
+    const Eigen::VectorXd d = leastNormSolution(gram, -2.0 * variance * trace, kSingular);
     for (int j = 0; j < kDegree; ++j) moved += share * d[j] * parts[j];
     return moved;
 }

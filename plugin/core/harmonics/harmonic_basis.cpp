@@ -1,6 +1,6 @@
 #include "core/harmonics/harmonic_basis.h"
 
-#include <Eigen/Eigenvalues>
+#include <Eigen/Jacobi>
 #include <algorithm>
 #include <cmath>
 #include <numeric>
@@ -9,6 +9,7 @@
 
 #include "core/harmonics/lanczos.h"
 #include "core/mesh/mesh.h"
+#include "core/support/dense_solvers.h"
 #include "core/support/errors.h"
 
 namespace spectral {
@@ -21,15 +22,6 @@ constexpr Index kMaxDenseVertices = 300;
 
 /// Lanczos restarts for the largest eigenvalue; many, as no shift speeds up convergence.
 constexpr int kMaxRestarts = 300;
-
-using DenseSolver = Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>;
-
-DenseSolver solved(const Eigen::MatrixXd& A) {
-    DenseSolver solver(A);
-    if (solver.info() == Eigen::Success) return solver;
-    throw SolverFailure("the dense eigensolver did not converge for " + std::to_string(A.rows()) +
-                        " vertices");
-}
 
 /// Eigenvectors of a positive semidefinite matrix, in any order, by Jacobi rotations: each
 /// eigenvalue is accurate relative to itself, whereas methods that first tridiagonalize have
@@ -109,7 +101,7 @@ HarmonicBasis denseBasis(const Laplacian& laplacian) {
         const Eigen::VectorXd Ac = A.selfadjointView<Eigen::Lower>() * c;
         A.selfadjointView<Eigen::Lower>().rankUpdate(c, (0.5 * c.dot(Ac) + bound) * c - Ac);
     }
-    Eigen::MatrixXd Phi = invSqrtD.asDiagonal() * solved(A).eigenvectors().leftCols(varying);
+    Eigen::MatrixXd Phi = invSqrtD.asDiagonal() * symmetricPairs(A).vectors.leftCols(varying);
     const Eigen::VectorXd lambda = refine(laplacian, Phi);
     HarmonicBasis basis;
     basis.Phi.resize(A.rows(), A.rows());

@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <functional>
 
+#include "core/support/dense_solvers.h"
 #include "core/support/types.h"
 
 namespace spectral {
@@ -16,15 +17,11 @@ struct LanczosOptions {
     double tolerance = 0.0;  ///< Relative error of the eigenvalues, which should be about 1.
 };
 
-struct Eigenpairs {
-    Eigen::VectorXd values;   ///< k, by descending modulus.
-    Eigen::MatrixXd vectors;  ///< n x k, orthonormal.
-};
-
 /// The eigenpairs of largest modulus, by Spectra's implicitly restarted Lanczos method.
 ///
 /// @param wanted  number of pairs, 1 <= wanted < n.
-/// @return at least one pair; fewer than wanted if the others have not converged.
+/// @return at least one pair, by descending modulus; fewer than wanted if the others have not
+///         converged.
 /// @throws SolverFailure  when none converges, or Spectra breaks down.
 /// @throws whatever the operator throws.
 Eigenpairs largestPairs(const SymmetricOperator& S, Index n, Index wanted,

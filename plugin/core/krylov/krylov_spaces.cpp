@@ -1,6 +1,5 @@
 #include "core/krylov/krylov_spaces.h"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cassert>
 #include <cmath>
@@ -8,7 +7,7 @@
 #include <utility>
 
 #include "core/krylov/rows.h"
-#include "core/support/errors.h"
+#include "core/support/dense_solvers.h"
 #include "core/support/threads.h"
 
 namespace spectral {
@@ -300,12 +299,9 @@ const KrylovSpaces::Ritz& KrylovSpaces::ritz(int column) const {
         a /= scale;
         b /= scale;
     }
-    Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> T;
-    T.computeFromTridiagonal(a, b);
-    if (T.info() != Eigen::Success)
-        throw SolverFailure("the tridiagonal eigenproblem of the Krylov space did not converge");
-    pairs = {Eigen::VectorXd(m), T.eigenvectors()};
-    for (Index i = 0; i < m; ++i) pairs.omega[i] = std::sqrt(S_.lambda(scale * T.eigenvalues()[i]));
+    auto [theta, Q] = tridiagonalPairs(a, b);
+    pairs = {Eigen::VectorXd(m), std::move(Q)};
+    for (Index i = 0; i < m; ++i) pairs.omega[i] = std::sqrt(S_.lambda(scale * theta[i]));
     return pairs;
 }
 

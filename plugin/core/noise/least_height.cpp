@@ -1,6 +1,5 @@
 #include "core/noise/least_height.h"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -9,6 +8,7 @@
 #include "core/graph/diffusion.h"
 #include "core/graph/local_average.h"
 #include "core/graph/robust_statistics.h"
+#include "core/support/dense_solvers.h"
 
 namespace spectral {
 
@@ -18,7 +18,6 @@ namespace {
 // with four filters, 1.2 times with six or eight.
 constexpr int kFilters = 6;
 constexpr int kProbes = 5;
-using Gram = Eigen::Matrix<double, kFilters, kFilters>;
 /// Positions, and probes of three columns each.
 using Rows = Eigen::Matrix<double, Eigen::Dynamic, 3 * (1 + kProbes), Eigen::RowMajor>;
 /// Their parts along the normals.
@@ -60,7 +59,7 @@ double leastHeight(const FaceGraph& graph, const Points& X, const Points& N,
     constexpr int kPlace = 64;
     constexpr double kQuietShare = 0.25;
     const auto signals = filteredSignals(graph.vertices, X, N, isMeasured);
-    Gram shape, white;
+    Eigen::MatrixXd shape(kFilters, kFilters), white(kFilters, kFilters);
     for (int j = 0; j < kFilters; ++j)
         for (int k = 0; k < kFilters; ++k) {
             const auto products = signals[j].cwiseProduct(signals[k]).colwise().sum().eval();
@@ -70,8 +69,7 @@ double leastHeight(const FaceGraph& graph, const Points& X, const Points& N,
     const double same = kSame * white.trace();
     white.diagonal().array() += same;
     shape.diagonal().array() += same * highest * highest;
-    const Eigen::Vector<double, kFilters> weights =
-        Eigen::GeneralizedSelfAdjointEigenSolver<Gram>(shape, white).eigenvectors().col(0);
+    const Eigen::VectorXd weights = leastQuotient(shape, white);
     Signals least = weights[0] * signals[0];
     for (int j = 1; j < kFilters; ++j) least += weights[j] * signals[j];
 
