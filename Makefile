@@ -3,7 +3,7 @@
 #   PYTHON              the Python >= 3.11 that makes .venv
 #   MESHLAB_SOURCE_DIR  a checkout of MeshLab 2025.07 with its submodules; else Debian's source
 #                       package is fetched into build/
-#   WARNINGS_AS_ERRORS  ON: a compiler warning fails the build
+#   WARNINGS_AS_ERRORS  ON: a compiler warning fails the build; OFF; not given: as the tree was built
 #   TEST_OPTIONS        of pytest in `make test`, such as --without-posix: as on Windows
 #   MESHES              the folder of the meshes that `make screenshots` shows
 #   PICTURES            of `make screenshots`: only these, such as "denoise colors", none of MeshLab
@@ -16,7 +16,7 @@
 #   SANITIZE            ON: `make fuzz` with AddressSanitizer and UndefinedBehaviorSanitizer
 PYTHON ?= python3
 MESHLAB_SOURCE_DIR ?=
-WARNINGS_AS_ERRORS ?= OFF
+WARNINGS_AS_ERRORS ?=
 MESHES ?= ../shared/data
 PICTURES ?=
 BENCH_MESH ?= $(MESHES)/dragon_40k.ply
@@ -30,12 +30,13 @@ SANITIZE ?= OFF
 
 BENCHMARKS := OFF
 BIN := .venv/bin
-CMAKE_OPTIONS = -DSPECTRAL_WARNINGS_AS_ERRORS=$(WARNINGS_AS_ERRORS) \
+CMAKE_OPTIONS = $(if $(WARNINGS_AS_ERRORS),-DSPECTRAL_WARNINGS_AS_ERRORS=$(WARNINGS_AS_ERRORS)) \
   -Dmuparser_DIR=$(MUPARSER)/lib/cmake/muparser -DPython3_EXECUTABLE=$(CURDIR)/$(BIN)/python \
   $(if $(MESHLAB_SOURCE_DIR),-DMESHLAB_SOURCE_DIR=$(abspath $(MESHLAB_SOURCE_DIR)))
 # One tree of objects for the package, its wheel, the tests and the benchmarks.
-PACKAGE_OPTIONS := --quiet --disable-pip-version-check --no-index --no-build-isolation --no-deps \
-  --config-settings=build-dir="$(CURDIR)/build" --config-settings=cmake.define.SPECTRAL_BUILD_TESTS=ON
+MODULE_OPTIONS := --quiet --disable-pip-version-check --no-index --no-build-isolation --no-deps \
+  --config-settings=build-dir="$(CURDIR)/build"
+PACKAGE_OPTIONS := $(MODULE_OPTIONS) --config-settings=cmake.define.SPECTRAL_BUILD_TESTS=ON
 
 # Stamp files live in the folder they describe, so that deleting .venv or build/ is enough to
 # have it set up again.
@@ -45,6 +46,9 @@ VENV := .venv/.requirements
 MANYLINUX := manylinux_2_35_$(shell uname -m)
 HOST_LIBRARIES := libmeshlab-common.so libQt5Core.so.5 libQt5Gui.so.5 libQt5Widgets.so.5 libQt5Xml.so.5 libQt5OpenGL.so.5
 PACKAGE := .venv/.package
+# The package without MeshLab's plugin: what the demonstration needs.
+MODULE := .venv/.module
+WITHOUT_PLUGIN := -DSPECTRAL_BUILD_PLUGIN=OFF -DSPECTRAL_BUILD_PYTHON=OFF -DSPECTRAL_BUILD_TESTS=OFF
 # Part of the package's libraries: pymeshlab has a shared one of the same name, which is not the system's.
 MUPARSER := $(CURDIR)/build/muparser
 COMPETITORS := .venv/.competitors
@@ -63,7 +67,7 @@ PACKAGE_SOURCES := CMakeLists.txt $(shell find plugin python -not -path '*/__pyc
 help:  ## list these commands
 	@sed -n 's/^\([a-z-]*\):.*## /  make \1\t/p' $(firstword $(MAKEFILE_LIST)) | expand -t 20
 
-demo: $(PACKAGE)  ## filter the Stanford bunny: report, mesh and picture in build/demo
+demo: $(if $(wildcard $(PACKAGE)),$(PACKAGE),$(MODULE))  ## filter the Stanford bunny: report, mesh and picture in build/demo
 	@mkdir -p build/demo
 	$(BIN)/python screenshots/scripts/demo.py build/demo
 
@@ -202,10 +206,10 @@ $(PACKAGES): plugin/cmake/debian_packages.txt plugin/cmake/install_debian_packag
 	@mkdir -p $(@D) && touch $@
 
 # Wheels only: no package gets to run a set-up script, and none needs a compiler. Python compiles
-# what is imported, a small part.
+# what is imported, a small part. --no-deps: the list is whole.
 $(VENV): python/requirements.txt | $(PACKAGES)
 	$(PYTHON) -m venv .venv
-	$(BIN)/pip install --no-compile --quiet --disable-pip-version-check --only-binary :all: --require-hashes -r $<
+	$(BIN)/pip install --no-deps --no-compile --quiet --disable-pip-version-check --only-binary :all: --require-hashes -r $<
 	@touch $@
 
 # What the basis, the signatures and texture are compared with. scikit-sparse alone has no wheel.
@@ -215,6 +219,18 @@ $(COMPETITORS): tests/benchmarks/requirements.txt tests/benchmarks/scikit_sparse
 	$(BIN)/pip install --quiet --disable-pip-version-check --only-binary :all: --require-hashes -r $<
 	$(BIN)/pip install --quiet --disable-pip-version-check --no-build-isolation --no-deps \
 	  --require-hashes -r tests/benchmarks/scikit_sparse.txt
+	@touch $@
+
+# The core needs nothing of Python's: it is compiled while pip, on one core, fetches and unpacks. What
+# fails in it fails again, and is told, when the package is built.
+$(MODULE): python/requirements.txt $(PACKAGE_SOURCES) | $(PACKAGES)
+	@echo 'Fetching Python packages and building the core: three minutes at first'
+	plugin/cmake/static_muparser.sh $(MUPARSER) >/dev/null
+	@$(MAKE) --no-print-directory $(VENV) & venv=$$!; \
+	  cmake -S . -B build -G Ninja --no-warn-unused-cli $(WITHOUT_PLUGIN) $(CMAKE_OPTIONS) >/dev/null && \
+	  cmake --build build --target spectral_core >/dev/null; wait $$venv
+	CMAKE_ARGS="$(CMAKE_OPTIONS)" $(BIN)/pip install $(MODULE_OPTIONS) --force-reinstall \
+	  --config-settings=cmake.define.SPECTRAL_BUILD_PLUGIN=OFF --config-settings=build.targets=_core ./python
 	@touch $@
 
 # Built by scikit-build-core in a folder that is kept, so that a changed file costs its own compilation

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Runs tests of the module _core, or the C++ tests, with AddressSanitizer and
-# UndefinedBehaviorSanitizer, or with ThreadSanitizer, beside the built package (`make demo` builds
+# UndefinedBehaviorSanitizer, or with ThreadSanitizer, beside the built package (`make build` builds
 # it): each kind takes five minutes of building and a few of tests.
 #
 # usage: sanitizers.sh [address|thread] [cpp|TESTS]

@@ -9,7 +9,6 @@ import argparse
 import functools
 import sys
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 from figure_numbers import Drawing, MeshFile, displacement
@@ -30,14 +29,16 @@ BUNNY_VIEW = View(direction=(0.25, 0.2, 1.0))
 
 def demonstrate(folder: Path) -> None:
     """Filter the bunny that comes with pymeshlab; write the mesh and a picture to `folder`."""
-    before, filtered, report = _filtered_bunny()
+    import pymeshlab
+
+    before, after, report = _filtered_bunny()
     folder.mkdir(parents=True, exist_ok=True)
     mesh_file, picture = folder / "bunny_filtered.ply", folder / "before_after.png"
-    mesh_set = _mesh_set()
-    mesh_set.add_mesh(filtered)
+    mesh_set = pymeshlab.MeshSet()
+    mesh_set.add_mesh(pymeshlab.Mesh(after.V, after.F))
     with writing_whole(mesh_file) as scratch:
         mesh_set.save_current_mesh(str(scratch))
-    _draw([before, _after(filtered)], picture)
+    _draw([before, after], picture)
 
     console = Console(soft_wrap=True)
     console.print(report_table(report, "Stanford bunny, low-pass"))
@@ -46,24 +47,25 @@ def demonstrate(folder: Path) -> None:
 
 def before_and_after(mesh: MeshFile) -> Drawing:
     """Compute the demonstration's picture; it needs no mesh of the collection."""
-    before, filtered, _ = _filtered_bunny()
-    after = _after(filtered)
+    before, after, _ = _filtered_bunny()
     numbers = displacement(before.V, before.F, after.V)
     return Drawing(numbers, functools.partial(_draw, [before, after]))
 
 
-def _filtered_bunny() -> tuple[Panel, Any, FilterReport]:
-    """Return the bunny, the filtered one as a `pymeshlab.Mesh`, and the filter's report."""
-    mesh_set = _mesh_set()
-    mesh_set.load_new_mesh(str(bunny_file()))
-    before = _panel("Stanford bunny", mesh_set.current_mesh())
-    return before, *filter_mesh(mesh_set.current_mesh(), OPTIONS)
-
-
-def _mesh_set() -> Any:
+def _filtered_bunny() -> tuple[Panel, Panel, FilterReport]:
+    """Return the bunny, the filtered one, and the filter's report."""
     import pymeshlab
 
-    return pymeshlab.MeshSet()
+    mesh_set = pymeshlab.MeshSet()
+    mesh_set.load_new_mesh(str(bunny_file()))
+    mesh = mesh_set.current_mesh()
+    before = Panel(
+        "Stanford bunny", mesh.vertex_matrix().copy(), mesh.face_matrix().astype(np.int64)
+    )
+    V, report = filter_mesh(before.V, before.F, OPTIONS)
+    size = str(OPTIONS.feature_size).replace("%", " %")
+    label = f"low-pass, {size} of the diagonal, {OPTIONS.steps} steps"
+    return before, Panel(label, V, before.F), report
 
 
 def bunny_file() -> Path:
@@ -73,18 +75,8 @@ def bunny_file() -> Path:
     return Path(pymeshlab.__file__).parent / "tests" / "sample_meshes" / "bunny.obj"
 
 
-def _after(mesh: Any) -> Panel:
-    size = str(OPTIONS.feature_size).replace("%", " %")
-    label = f"low-pass, {size} of the diagonal, {OPTIONS.steps} steps"
-    return _panel(label, mesh)
-
-
 def _draw(panels: list[Panel], path: Path) -> None:
     draw_side_by_side(panels, path, view=BUNNY_VIEW)
-
-
-def _panel(label: str, mesh: Any) -> Panel:
-    return Panel(label, mesh.vertex_matrix().copy(), mesh.face_matrix().astype(np.int64))
 
 
 def _main() -> None:
