@@ -11,15 +11,7 @@ import pymeshlab
 import pytest
 import pyvista
 from denoise_reference import Array, Reference, mean_edge, unit
-from helpers import (
-    assert_same,
-    decorated,
-    length,
-    lower_part,
-    mesh_set_of,
-    refusal,
-    snapshot,
-)
+from helpers import assert_same, decorated, length, lower_part, mesh_set_of, refusal, snapshot
 from meshlab_spectral import DenoiseOptions, OptionError, denoise_mesh
 from numpy.typing import NDArray
 from scipy.ndimage import gaussian_filter
@@ -185,9 +177,7 @@ def test_noise_in_a_region_is_removed_there_and_all_else_is_left_bit_for_bit_unc
     assert ", times 0.5; no noise found in the rest" in report["summary"]
 
 
-def test_nothing_found_says_what_to_try_in_lengths_of_the_mesh(
-    decimated: Decimated,
-) -> None:
+def test_nothing_found_says_what_to_try_in_lengths_of_the_mesh(decimated: Decimated) -> None:
     V, F = decimated("bunny.obj", 20000)
     edge = mean_edge(V, F)
     summary = denoise_mesh(V, F)[1]["summary"]
@@ -218,9 +208,7 @@ def test_a_cad_part_is_left_alone_and_never_crumpled() -> None:
 
 @pytest.mark.parametrize("axis", [0, 1, 2])
 @pytest.mark.parametrize(
-    "units",
-    [(111e3, 1), (1e3, 1), (1, 0.01), (111e3, 0.3048)],
-    ids=["degree", "km", "cm", "foot"],
+    "units", [(111e3, 1), (1e3, 1), (1, 0.01), (111e3, 0.3048)], ids=["degree", "km", "cm", "foot"]
 )
 def test_a_terrain_of_two_units_is_called_so(units: tuple[float, float], axis: int) -> None:
     """`units` are those of the plane and of the height, in metres."""
@@ -375,11 +363,7 @@ def test_every_other_attribute_survives(decimated: Decimated) -> None:
     report = mesh_set.apply_filter(DENOISE)
     assert report["max_displacement"] > 0
     after = snapshot(mesh_set.current_mesh())
-    positions_and_normals = (
-        "vertex_matrix",
-        "vertex_normal_matrix",
-        "face_normal_matrix",
-    )
+    positions_and_normals = ("vertex_matrix", "vertex_normal_matrix", "face_normal_matrix")
     for name in positions_and_normals:
         before.pop(name, None)
         after.pop(name, None)
