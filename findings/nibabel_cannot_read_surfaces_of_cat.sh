@@ -1,9 +1,9 @@
 #!/bin/sh
 # nibabel 5.4.2 cannot read surfaces in FreeSurfer's format that cat-surf 1.1.6 (CAT-Surface, of CAT12) writes.
 #
-# The magic number is followed by a comment, which most writers end by an empty line. CAT ends it by one newline;
-# FreeSurfer's C code takes both. nibabel reads two lines, the second of which then lasts until a byte of the
-# numbers happens to be 10: it fails, on a count from the middle of the data. Insert a newline, or write GIFTI.
+# The magic number is followed by a comment, which most writers end by an empty line, and CAT by one newline. nibabel
+# reads two lines, the second of which then lasts until a byte of the numbers happens to be 10: it fails, on a count
+# from the middle of the data. Insert a newline, or write GIFTI.
 #
 # Seen: ValueError, cannot reshape an array; with a second newline the 162 vertices and 320 faces.
 # Needs: python3 with venv, a package index; Linux on x86-64.
