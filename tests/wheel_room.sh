@@ -39,8 +39,8 @@ install() { venv/bin/pip install --quiet --quiet --disable-pip-version-check "$(
 PATH=$PWD/venv/bin:$PATH
 venv/bin/pip install --quiet --quiet --disable-pip-version-check meshlab_spectral-*.whl
 du -sh venv | sed 's/venv/alone/'
-install formats
-du -sh venv | sed 's/venv/with VTK and NIfTI/'
+install formats,usd
+du -sh venv | sed 's/venv/with VTK, NIfTI and USD/'
 python try_without_meshlab.py samples
 apt-get update -qq && apt-get install -qq --no-install-recommends $1 >/dev/null
 install formats,meshlab
