@@ -119,6 +119,7 @@ RemovalOptions removalOptions(const DenoiseOptions& options, const Diagnosis& di
     if (removal.size <= kMaxWhiteSize) removal.size = 0.0;
     removal.keepCreases = options.keepCreases;
     removal.isUnderShape = noise.isUnderShape;
+    removal.isEven = noise.isEven;
     removal.areScanLines = diagnosis.kind == NoiseKind::ScanLines;
     return removal;
 }

@@ -296,6 +296,7 @@ Followed withoutWhiteNoise(const FaceGraph& graph, const Points& X0, const Remov
         limitDisplacement(X0, options, removal.X);
         return {std::move(removal), {}};
     }
+    if (options.isEven) return roundsAndFlatParts(graph, X0, options, progress);
     LinearSteps linear =
         linearSteps(graph, means, X0, options.mayMove, options.noise, options.areImpulses);
     limitDisplacement(X0, options, linear.X);

@@ -273,7 +273,7 @@ Diagnosis diagnoseWhole(const FaceGraph& graph, const Points& X,
     if (!isWhite && !noise.isUnderShape && noise.height < kHighNoise * edge &&
         !hasManySpikes(diagnosis))
         return diagnosis;
-    if (!noise.isUnderShape && !second.areEven) noise.height *= noiseShare(correlation);
+    if (!noise.isUnderShape && !noise.isEven) noise.height *= noiseShare(correlation);
     // The steps of voxels are flat, too, but do not alternate.
     if (isWhite || correlation < 0.0) addFlatParts(graph, X, diagnosis.isClean);
     diagnosis.kind = noise.height < kMinHeight * edge ? NoiseKind::None

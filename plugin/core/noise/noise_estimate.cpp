@@ -404,8 +404,9 @@ NoiseEstimate estimateNoise(const FaceGraph& graph, const Points& X, const Point
                               ? leastHeight(graph, X, N, isMeasured, second.height)
                               : std::min(second.height, noise[0]);
         if (isShort) estimate.height = std::min(estimate.height, lowest);
-        // Vertices near to each other on the edges of a grid have like noise.
-        if (second.areEven && !estimate.isUnderShape) estimate.height = noise[1];
+        // Vertices near to each other on the edges of a grid have like noise, so that it rises.
+        estimate.isEven = second.areEven && !estimate.isUnderShape && noise[1] > estimate.height;
+        if (estimate.isEven) estimate.height = noise[1];
     }
     // Of second residuals along crests: at least -.22 on clean ribs of six edges, which fall, and
     // -.1 on those of eight, which do not; -.25 and -.21 with noise of .1 edges on these.

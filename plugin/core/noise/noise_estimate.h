@@ -14,6 +14,7 @@ struct NoiseEstimate {
     double correlation = 1.0;   ///< Correlation of neighbouring residuals: residualCorrelation.
     double meanEdge = 0.0;      ///< Mean edge length, length units.
     bool isUnderShape = false;  ///< White noise under a shape that is as high, such as ribs.
+    bool isEven = false;        ///< Nearly white: isEvenNoise.
     bool isShape = false;       ///< Its octaves are those of natural ground or fine relief.
 };
 
