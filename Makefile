@@ -8,7 +8,7 @@
 #   MESHES              the folder of the meshes that `make screenshots` shows
 #   PICTURES            of `make screenshots`: only these, such as "denoise colors", none of MeshLab
 #   INSTALL             ON: `make web` installs Emscripten, from Debian
-#   BENCH_MESH          the mesh of the C++ benchmark, skipped when there is no such file
+#   BENCH_MESH          the mesh of the C++ benchmarks
 #   BENCH_OPTIONS       of `make bench-basis`, `bench-contract`, `bench-defaults`, `bench-denoise`, `bench-memory`, `bench-signatures`, `bench-texture`, `bench-tiles`; --help lists them
 #   PROMISES_OPTIONS    of `make promises`, such as '--only artefacts speed'; --help lists them
 #   FUZZ_OPTIONS        of `make fuzz`; tests/fuzz/fuzz_core.cpp lists them
@@ -62,7 +62,7 @@ PACKAGE_SOURCES := CMakeLists.txt $(shell find plugin python -not -path '*/__pyc
 # Two targets at once would fetch MeshLab's headers twice; ninja uses every core anyway.
 .NOTPARALLEL:
 .DELETE_ON_ERROR:
-.PHONY: help demo test quick wheel sdist web web-test docs gui-test screenshots setup build bench bench-basis bench-batch bench-contract bench-defaults bench-denoise bench-ldlt bench-memory bench-signatures bench-texture bench-tiles promises fuzz fuzz-python lint options format clean
+.PHONY: help demo test quick wheel sdist web web-test docs gui-test screenshots setup build bench-basis bench-batch bench-contract bench-defaults bench-denoise bench-ldlt bench-memory bench-signatures bench-texture bench-tiles promises fuzz fuzz-python lint options format clean
 
 help:  ## list these commands
 	@sed -n 's/^\([a-z-]*\):.*## /  make \1\t/p' $(firstword $(MAKEFILE_LIST)) | expand -t 20
@@ -124,13 +124,6 @@ setup: $(PACKAGES) $(VENV)  ## install what is missing: Debian packages, .venv
 build: $(PACKAGE)  ## compile the package and the C++ tests, in build/
 	cmake -S . -B build -DSPECTRAL_BUILD_BENCHMARKS=$(BENCHMARKS) $(CMAKE_OPTIONS)
 	cmake --build build
-
-bench: BENCHMARKS := ON
-bench: build $(PACKAGE)  ## measure time, memory and artefacts
-	@if [ -f $(BENCH_MESH) ]; then set -x; build/tests/benchmarks/bench_dragon $(BENCH_MESH); \
-	else echo "bench_dragon skipped: no $(BENCH_MESH)"; fi
-	$(BIN)/python tests/benchmarks/bench_pymeshlab.py
-	$(BIN)/python tests/benchmarks/bench_artefacts.py
 
 bench-defaults: $(PACKAGE)  ## the run with every parameter at its default, on real meshes
 	$(BIN)/python tests/benchmarks/bench_defaults.py $(BENCH_OPTIONS)

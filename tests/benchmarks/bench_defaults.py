@@ -28,6 +28,7 @@ from typing import Any
 SETTINGS: dict[str, dict[str, Any]] = {
     "default": {},
     "low-pass-15": {"feature_size": 15},
+    "conformal-15": {"feature_size": 15, "steps": 10, "basis_update": "conformal"},
     "boost-20": {
         "filter_type": "band-pass",
         "feature_size": 20,

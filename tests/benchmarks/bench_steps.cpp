@@ -1,7 +1,6 @@
-// The fractional flow: how fast its step schemes converge, whether automatic steps keep their
-// tolerance, and what a truncated spectrum gains where later steps need no basis.
+// The fractional flow: how fast its step schemes converge, and what a truncated spectrum gains
+// where later steps need no basis.
 //   bench_steps convergence MESH.ply...   errors of both schemes with K steps against a fine limit
-//   bench_steps automatic MESH.ply...     automatic steps against 8 times as many midpoint steps
 //   bench_steps truncated MESH.ply...     ten truncated steps against ten with a basis each
 // Errors are the largest of any vertex, in diagonals of the bounding box. All take minutes on
 // meshes of 40,000 vertices and more.
@@ -111,34 +110,6 @@ void printConvergence(const char* file) {
     }
 }
 
-/// Part of the input's surface on which two shapes are further apart than the tolerance.
-double partBeyond(double tolerance, const Vertices& A, const Vertices& B,
-                  const Eigen::VectorXd& D) {
-    return ((A - B).rowwise().norm().array() > tolerance).select(D, 0.0).sum() / D.sum();
-}
-
-void printAutomatic(const char* file) {
-    const testing::Mesh mesh = testing::readPly(file);
-    const Surface surface = surfaceOf(mesh.V, mesh.F);
-    const double diagonal = boundingBoxDiagonal(surface.X);
-    const double tolerance = 5e-4 * diagonal;
-    for (const Case& c : kCases) {
-        FilterOptions options = optionsOf(c, diagonal);
-        options.steps = 0;
-        options.tolerance = tolerance;
-        const auto start = std::chrono::steady_clock::now();
-        const FilterResult result = fractionalFilter(surface.X, surface.F, options);
-        const std::chrono::duration<double> took = std::chrono::steady_clock::now() - start;
-        const Vertices reference = Flow(surface, options).midpoint(8 * result.steps);
-        std::printf(
-            "| %s | %s | %d | %.1f | %.2f | %.2f | %.2f %% | %.2f %% |\n", file, c.name,
-            result.steps, took.count(), result.stepError / tolerance,
-            largestDifference(result.V, reference) / tolerance, 100.0 * result.singularPart,
-            100.0 * partBeyond(tolerance, result.V, reference, lumpedMass(surface.X, surface.F)));
-        std::fflush(stdout);
-    }
-}
-
 void printTruncated(const char* file) {
     const testing::Mesh mesh = testing::readPly(file);
     const Surface surface = surfaceOf(mesh.V, mesh.F);
@@ -178,21 +149,15 @@ void printTruncated(const char* file) {
 
 int main(int argc, char** argv) {
     const std::string table = argc > 2 ? argv[1] : "";
-    if (table != "convergence" && table != "automatic" && table != "truncated") {
-        std::fprintf(stderr, "usage: %s convergence|automatic|truncated MESH.ply...\n", argv[0]);
+    if (table != "convergence" && table != "truncated") {
+        std::fprintf(stderr, "usage: %s convergence|truncated MESH.ply...\n", argv[0]);
         return 2;
     }
-    if (table == "automatic")
-        std::printf(
-            "| mesh | filter | steps | seconds | estimated error / tolerance | real error / "
-            "tolerance | not reached, told | not reached, real |\n");
     if (table == "truncated")
         std::printf(
             "| mesh | filter | seconds | with a basis in every step | ratio | largest distance | "
             "bases |\n");
-    const auto print = table == "automatic"   ? printAutomatic
-                       : table == "truncated" ? printTruncated
-                                              : printConvergence;
-    for (int i = 2; i < argc; ++i) print(argv[i]);
+    for (int i = 2; i < argc; ++i)
+        (table == "truncated" ? printTruncated : printConvergence)(argv[i]);
     return EXIT_SUCCESS;
 }
