@@ -2,13 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <sstream>
 
 #include "core/analysis/bands.h"
 #include "core/mesh/contacts.h"
 #include "core/mesh/measures.h"
 #include "core/support/frequency.h"
-#include "fuzz/contract.h"
 #include "fuzz/dense_reference.h"
 
 namespace spectral::fuzz {
@@ -30,24 +28,16 @@ constexpr double kSurfaceRoundOff = 1e-12;
 /// A vector with a larger residual is not a harmonic.
 constexpr double kUselessResidual = 1e-2;
 
-template <class... Parts>
-std::pair<std::string, std::string> failure(const char* kind, const Parts&... parts) {
-    std::ostringstream text;
-    text.precision(3);
-    (text << ... << parts);
-    return {kind, text.str()};
-}
-
 /// Compares a result with a reference, first in double precision and, if necessary, in extended
 /// precision, three times.
 /// @param ofReference  maps a DenseSpectrum to a matrix of the size of `computed`.
 /// @param size         norm of a difference of two such matrices.
-/// @param accuracy     gets a failure if the error exceeds `tolerance` beyond uncertainty.
+/// @param verdict      gets a failure if the error exceeds `tolerance` beyond uncertainty.
 template <class OfReference, class Size>
 void compare(const char* kind, const Eigen::MatrixXd& computed, double tolerance, double unit,
              DenseReference& reference, const OfReference& ofReference, const Size& size,
-             Accuracy& accuracy) {
-    accuracy.isCompared = true;
+             Verdict& verdict) {
+    verdict.isCompared = true;
     const auto error = [&](Precision precision) {
         return size(computed - ofReference(reference.at(precision)));
     };
@@ -59,12 +49,11 @@ void compare(const char* kind, const Eigen::MatrixXd& computed, double tolerance
         unknown = std::max(unknown, size(ofReference(reference.at(perturbed)) -
                                          ofReference(reference.at(Precision::Extended))));
     if (!(exact > tolerance + kUncertainty * unknown)) {
-        accuracy.isExcused = true;
+        verdict.isExcused = true;
         return;
     }
-    accuracy.failures.push_back(failure(kind, "error ", exact / unit, ", allowed ",
-                                        tolerance / unit, ", uncertainty of the reference ",
-                                        unknown / unit));
+    verdict.failures.push_back(failure(kind, "error ", exact / unit, ", allowed ", tolerance / unit,
+                                       ", uncertainty of the reference ", unknown / unit));
 }
 
 /// F at all frequencies of the reference.
@@ -96,7 +85,7 @@ Eigen::MatrixXd interiorRows(const DenseReference& reference, const Eigen::Matri
 /// With residuals r_i = W phi_i - lambda_i D phi_i, (lambda_i - lambda_j) phi_i^T D phi_j is
 /// phi_j^T r_i - phi_i^T r_j: the loss of orthogonality that residuals allow.
 void checkOrthogonality(const Eigen::MatrixXd& gram, const ManifoldHarmonics& harmonics,
-                        Accuracy& accuracy) {
+                        Verdict& verdict) {
     const Eigen::VectorXd norms = harmonics.residuals.cwiseProduct(harmonics.lambda);
     for (Index i = 0; i < gram.rows(); ++i)
         for (Index j = 0; j <= i; ++j) {
@@ -104,7 +93,7 @@ void checkOrthogonality(const Eigen::MatrixXd& gram, const ManifoldHarmonics& ha
             if (overlap <= 1e-8) continue;
             const double gap = std::abs(harmonics.lambda[i] - harmonics.lambda[j]);
             if (i != j && overlap * gap <= kLeeway * (norms[i] + norms[j])) continue;
-            accuracy.failures.push_back(
+            verdict.failures.push_back(
                 failure("orthogonality", "Phi^T D Phi - I has ", overlap, " at ", i, ", ", j));
             return;
         }
@@ -122,17 +111,16 @@ bool hasContacts(const MeshLaplacian& mesh) {
 
 }  // namespace
 
-Accuracy accuracyOf(const testing::Mesh& mesh, const FilterOptions& options,
-                    const FilterResult& result) {
-    Accuracy accuracy;
+void compareWithDense(const testing::Mesh& mesh, const FilterOptions& options,
+                      const FilterResult& result, Verdict& verdict) {
     const bool isOneStep = options.steps == 1 || options.basisUpdate == BasisUpdate::None;
-    if (!isOneStep || !result.accuracyReached || mesh.V.rows() > kMaxVertices) return accuracy;
+    if (!isOneStep || !result.accuracyReached || mesh.V.rows() > kMaxVertices) return;
     if (!options.part.selected.empty() || options.part.weight.size() > 0 ||
         options.creaseAngle > 0.0 || options.preserveVolume)
-        return accuracy;  // the reference filters whole meshes only
+        return;  // the reference filters whole meshes only
     DenseReference reference(mesh.V, mesh.F, options.laplacian, options.boundary);
-    if (reference.size() == 0) return accuracy;
-    if (hasContacts(reference.mesh())) return accuracy;  // of which the reference knows nothing
+    if (reference.size() == 0) return;
+    if (hasContacts(reference.mesh())) return;  // of which the reference knows nothing
 
     const double diagonal = boundingBoxDiagonal(reference.mesh().surface.X);
     const double roundOff = 1e-15 * mesh.V.cwiseAbs().maxCoeff();
@@ -156,21 +144,19 @@ Accuracy accuracyOf(const testing::Mesh& mesh, const FilterOptions& options,
             return (Y.rowwise().norm() - most).maxCoeff();
         };
         compare(isBasis ? "basis accuracy" : "accuracy", moved, tolerance, diagonal, reference,
-                change, largest, accuracy);
-        return accuracy;
+                change, largest, verdict);
+        return;
     }
     // Automatic steps promise accuracy over the surface alone.
     const auto overSurface = [&](const Eigen::MatrixXd& Y) {
         return std::sqrt(Y.rowwise().squaredNorm().dot(D) / area);
     };
-    compare("accuracy", moved, tolerance, diagonal, reference, change, overSurface, accuracy);
-    return accuracy;
+    compare("accuracy", moved, tolerance, diagonal, reference, change, overSurface, verdict);
 }
 
-Accuracy accuracyOf(const testing::Mesh& mesh, const ArtefactOptions& options,
-                    const Artefacts& result) {
-    Accuracy accuracy;
-    if (mesh.V.rows() > kMaxVertices) return accuracy;
+void compareWithDense(const testing::Mesh& mesh, const ArtefactOptions& options,
+                      const Artefacts& result, Verdict& verdict) {
+    if (mesh.V.rows() > kMaxVertices) return;
     DenseReference reference(mesh.V, mesh.F, options.laplacian, Boundary::Free);
     const double cutoff = cutoffFrequency(options.featureSize);
     const auto lengths = [&](const DenseSpectrum& spectrum) {
@@ -182,13 +168,11 @@ Accuracy accuracyOf(const testing::Mesh& mesh, const ArtefactOptions& options,
     const double diagonal = boundingBoxDiagonal(reference.mesh().surface.X);
     compare("accuracy of artefacts", interiorRows(reference, result.length),
             kLeeway * std::max(result.errorEstimate, kAccuracy * diagonal), diagonal, reference,
-            lengths, largestRow, accuracy);
-    return accuracy;
+            lengths, largestRow, verdict);
 }
 
-Accuracy accuracyOf(const testing::Mesh& mesh, const HarmonicsOptions& options,
-                    const ManifoldHarmonics& result) {
-    Accuracy accuracy;
+void compareWithDense(const testing::Mesh& mesh, const HarmonicsOptions& options,
+                      const ManifoldHarmonics& result, Verdict& verdict) {
     DenseReference reference(mesh.V, mesh.F, options.laplacian, options.boundary);
     const Laplacian& A = reference.laplacian();
     const Eigen::MatrixXd Phi = interiorRows(reference, result.Phi);
@@ -196,30 +180,30 @@ Accuracy accuracyOf(const testing::Mesh& mesh, const HarmonicsOptions& options,
     for (const auto& [vertex, row] : reference.mesh().surface.copies)
         copied += result.Phi.row(vertex).squaredNorm();
     if (result.Phi.squaredNorm() - copied > Phi.squaredNorm() * (1.0 + 1e-9))
-        accuracy.failures.push_back(failure("support", "harmonics at vertices that cannot move"));
+        verdict.failures.push_back(failure("support", "harmonics at vertices that cannot move"));
     const Index k = Phi.cols(), constants = A.constants.count();
-    checkOrthogonality(Phi.transpose() * (A.D.asDiagonal() * Phi), result, accuracy);
+    checkOrthogonality(Phi.transpose() * (A.D.asDiagonal() * Phi), result, verdict);
     for (Index i = 0; i < k; ++i) {
         if (i < constants) {
             if (result.lambda[i] != 0.0)
-                accuracy.failures.push_back(failure("constants", "lambda ", result.lambda[i]));
+                verdict.failures.push_back(failure("constants", "lambda ", result.lambda[i]));
             continue;
         }
         const Eigen::VectorXd r =
             A.W * Phi.col(i) - result.lambda[i] * A.D.cwiseProduct(Phi.col(i));
         const double residual = r.cwiseQuotient(A.D.cwiseSqrt()).norm() / result.lambda[i];
         if (!(residual <= kLeeway * result.residuals[i] + 1e-9)) {
-            accuracy.failures.push_back(
+            verdict.failures.push_back(
                 failure("residual", residual, " instead of ", result.residuals[i], " at ", i));
             break;
         }
     }
     const double worst = result.residuals.maxCoeff();
     if (worst > kUselessResidual) {
-        accuracy.failures.push_back(failure("useless residual", worst));
-        return accuracy;
+        verdict.failures.push_back(failure("useless residual", worst));
+        return;
     }
-    if (reference.size() > kMaxVertices) return accuracy;
+    if (reference.size() > kMaxVertices) return;
     // Relative errors, which the residuals bound.
     const auto values = [&](const DenseSpectrum& spectrum) {
         return Eigen::MatrixXd(spectrum.lambda.head(k));
@@ -231,14 +215,12 @@ Accuracy accuracyOf(const testing::Mesh& mesh, const HarmonicsOptions& options,
         return largest;
     };
     compare("eigenvalues", result.lambda, kLeeway * worst + 1e-7, 1.0, reference, values, relative,
-            accuracy);
-    return accuracy;
+            verdict);
 }
 
-Accuracy accuracyOf(const testing::Mesh& mesh, const SpectrumOptions& options,
-                    const GeometrySpectrum& result) {
-    Accuracy accuracy;
-    if (mesh.V.rows() > kMaxVertices) return accuracy;
+void compareWithDense(const testing::Mesh& mesh, const SpectrumOptions& options,
+                      const GeometrySpectrum& result, Verdict& verdict) {
+    if (mesh.V.rows() > kMaxVertices) return;
     DenseReference reference(mesh.V, mesh.F, options.laplacian, options.boundary);
     const auto frequencyOf = [&](Index octave) {
         return 2.0 * kPi / result.octaveFeatureSizes[octave];
@@ -246,8 +228,8 @@ Accuracy accuracyOf(const testing::Mesh& mesh, const SpectrumOptions& options,
     const Index count = result.octaveEnergies.size();
     const Bands bands(result.surfaceDiagonal, frequencyOf(0), frequencyOf(count - 1));
     if (bands.count() != count) {
-        accuracy.failures.push_back(failure("octaves", bands.count(), " instead of ", count));
-        return accuracy;
+        verdict.failures.push_back(failure("octaves", bands.count(), " instead of ", count));
+        return;
     }
     const auto energies = [&](const DenseSpectrum& spectrum) {
         Eigen::MatrixXd sums = Eigen::MatrixXd::Zero(count, 1);
@@ -261,8 +243,7 @@ Accuracy accuracyOf(const testing::Mesh& mesh, const SpectrumOptions& options,
     };
     const double tolerance = (1e-3 + kLeeway * result.mismatch) * result.totalEnergy;
     compare("octave energies", result.octaveEnergies, tolerance, result.totalEnergy, reference,
-            energies, largest, accuracy);
-    return accuracy;
+            energies, largest, verdict);
 }
 
 }  // namespace spectral::fuzz

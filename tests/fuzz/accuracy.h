@@ -1,33 +1,25 @@
 #pragma once
 
-#include <string>
-#include <utility>
-#include <vector>
-
-#include "fuzz/cases.h"
+#include "fuzz/contract.h"
 
 namespace spectral::fuzz {
 
-/// How a result compares with all eigenvectors of the same W and D.
-struct Accuracy {
-    bool isCompared = false;  ///< A reference exists: one Laplacian, not too many vertices.
-    bool isExcused = false;   ///< As in Verdict.
-    std::vector<std::pair<std::string, std::string>> failures;  ///< Kind and text.
-};
+// Compare a result with all eigenvectors of the same W and D, where there is one Laplacian and not
+// too many vertices.
 
 /// A filter of one step, where it claims to have reached its accuracy.
-Accuracy accuracyOf(const testing::Mesh& mesh, const FilterOptions& options,
-                    const FilterResult& result);
+void compareWithDense(const testing::Mesh& mesh, const FilterOptions& options,
+                      const FilterResult& result, Verdict& verdict);
 
-Accuracy accuracyOf(const testing::Mesh& mesh, const ArtefactOptions& options,
-                    const Artefacts& result);
+void compareWithDense(const testing::Mesh& mesh, const ArtefactOptions& options,
+                      const Artefacts& result, Verdict& verdict);
 
 /// Eigenvalues; and residuals and orthogonality, which need no reference.
-Accuracy accuracyOf(const testing::Mesh& mesh, const HarmonicsOptions& options,
-                    const ManifoldHarmonics& result);
+void compareWithDense(const testing::Mesh& mesh, const HarmonicsOptions& options,
+                      const ManifoldHarmonics& result, Verdict& verdict);
 
 /// Total energy, and its share in every octave.
-Accuracy accuracyOf(const testing::Mesh& mesh, const SpectrumOptions& options,
-                    const GeometrySpectrum& result);
+void compareWithDense(const testing::Mesh& mesh, const SpectrumOptions& options,
+                      const GeometrySpectrum& result, Verdict& verdict);
 
 }  // namespace spectral::fuzz

@@ -383,33 +383,4 @@ std::vector<double> numbersOf(const Result& result) {
     return numbers.all;
 }
 
-const char* nameOf(ErrorCode code) {
-    switch (code) {
-        case ErrorCode::OptionOutOfRange: return "OptionOutOfRange";
-        case ErrorCode::EmptyMesh: return "EmptyMesh";
-        case ErrorCode::NoFaces: return "NoFaces";
-        case ErrorCode::BadIndex: return "BadIndex";
-        case ErrorCode::NotFinite: return "NotFinite";
-        case ErrorCode::ValueNotFinite: return "ValueNotFinite";
-        case ErrorCode::NoData: return "NoData";
-        case ErrorCode::NoArea: return "NoArea";
-        case ErrorCode::DegenerateTriangles: return "DegenerateTriangles";
-        case ErrorCode::ShapeCollapsed: return "ShapeCollapsed";
-        case ErrorCode::ShrinksToNothing: return "ShrinksToNothing";
-        case ErrorCode::SingularMatrix: return "SingularMatrix";
-        case ErrorCode::TooManyVertices: return "TooManyVertices";
-        case ErrorCode::OutOfMemory: return "OutOfMemory";
-        case ErrorCode::BasisOutOfMemory: return "BasisOutOfMemory";
-        case ErrorCode::BasisTooLarge: return "BasisTooLarge";
-        case ErrorCode::BasisTooSmall: return "BasisTooSmall";
-        case ErrorCode::BasisIncomplete: return "BasisIncomplete";
-        case ErrorCode::TooManyHarmonics: return "TooManyHarmonics";
-        case ErrorCode::BoundaryFixesAll: return "BoundaryFixesAll";
-        case ErrorCode::TooSteep: return "TooSteep";
-        case ErrorCode::SolverFailed: return "SolverFailed";
-        case ErrorCode::Cancelled: return "Cancelled";
-    }
-    return "unknown";
-}
-
 }  // namespace spectral::fuzz

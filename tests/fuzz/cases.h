@@ -62,6 +62,4 @@ Outcome run(const Case& of, int threads);
 /// All numbers of a result, to be compared bit for bit.
 std::vector<double> numbersOf(const Result& result);
 
-const char* nameOf(ErrorCode code);
-
 }  // namespace spectral::fuzz

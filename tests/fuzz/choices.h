@@ -7,7 +7,7 @@
 
 namespace spectral::fuzz {
 
-/// Decisions read from bytes, those of a fuzzing engine or of a seed; zeros after their end.
+/// Decisions read from the bytes of a seed; zeros after their end.
 class Choices {
   public:
     Choices(const std::uint8_t* data, std::size_t size) : next_(data), end_(data + size) {}

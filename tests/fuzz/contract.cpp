@@ -4,7 +4,6 @@
 #include <cmath>
 #include <cstring>
 #include <functional>
-#include <sstream>
 
 #include "core/analysis/bands.h"
 #include "core/laplacian/interior.h"
@@ -16,14 +15,6 @@
 namespace spectral::fuzz {
 
 namespace {
-
-template <class... Parts>
-Failure failure(const char* kind, const Parts&... parts) {
-    std::ostringstream text;
-    text.precision(4);
-    (text << ... << parts);
-    return {kind, text.str()};
-}
 
 /// Whether all bits are equal, those of NaN included.
 template <class T>
@@ -46,7 +37,7 @@ void checkOutcome(const Case& of, Verdict& verdict) {
         if (!outcome.code)
             failures.push_back(failure("foreign exception", outcome.text));
         else if (outcome.text.empty())
-            failures.push_back(failure("no text", nameOf(*outcome.code)));
+            failures.push_back(failure("no text", "of an error"));
         if (outcome.code == ErrorCode::Cancelled && of.cancelAt == 0)
             failures.push_back(failure("cancelled", "by nobody"));
         return;
@@ -254,22 +245,22 @@ struct CheckResult {
     void operator()(const FilterOptions& options) const {
         const auto& result = std::get<FilterResult>(*verdict.outcome.result);
         checkFilter(of, options, result, verdict.failures);
-        if (compares) add(accuracyOf(of.mesh.mesh, options, result));
+        compare(options, result);
     }
     void operator()(const ArtefactOptions& options) const {
         const auto& result = std::get<Artefacts>(*verdict.outcome.result);
         checkArtefacts(of, result, verdict.failures);
-        if (compares) add(accuracyOf(of.mesh.mesh, options, result));
+        compare(options, result);
     }
     void operator()(const HarmonicsOptions& options) const {
         const auto& result = std::get<ManifoldHarmonics>(*verdict.outcome.result);
         checkHarmonics(of, options, result, verdict.failures);
-        if (compares) add(accuracyOf(of.mesh.mesh, options, result));
+        compare(options, result);
     }
     void operator()(const SpectrumOptions& options) const {
         const auto& result = std::get<GeometrySpectrum>(*verdict.outcome.result);
         checkSpectrum(result, verdict.failures);
-        if (compares) add(accuracyOf(of.mesh.mesh, options, result));
+        compare(options, result);
     }
     void operator()(const DenoiseOptions& options) const {
         checkDenoise(of, options, std::get<DenoiseResult>(*verdict.outcome.result),
@@ -278,10 +269,9 @@ struct CheckResult {
     void operator()(const BandsOptions&) const {}
 
   private:
-    void add(const Accuracy& accuracy) const {
-        verdict.isCompared = accuracy.isCompared;
-        verdict.isExcused = accuracy.isExcused;
-        for (const auto& [kind, text] : accuracy.failures) verdict.failures.push_back({kind, text});
+    template <class OptionsOf, class ResultOf>
+    void compare(const OptionsOf& options, const ResultOf& result) const {
+        if (compares) compareWithDense(of.mesh.mesh, options, result, verdict);
     }
 };
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -13,6 +14,15 @@ struct Failure {
     std::string kind;  ///< One or two words; failures are counted by kind.
     std::string text;
 };
+
+/// @param parts  written one after the other.
+template <class... Parts>
+Failure failure(const char* kind, const Parts&... parts) {
+    std::ostringstream text;
+    text.precision(4);
+    (text << ... << parts);
+    return {kind, text.str()};
+}
 
 struct Verdict {
     Outcome outcome;
