@@ -1,16 +1,10 @@
 # Read by ctest. More than two seconds of processor time: `make quick` leaves them out.
 set_tests_properties(
-  GeometrySpectrumWithFixedBoundary.AgreesWithAllEigenvectorsOfTheInterior
-  GeometrySpectrum.ReturnsTheDiagnosisAndTheFeatureSizeOfNoise
-  GeometrySpectrum.ContainsAllEnergyOfTheShape
   GeometrySpectrum.DoesNotDependOnTheResolutionForLargeFeatures
-  GeometrySpectrum.CanBeInterruptedAtAnyStage
   SurfaceTexture.TransmitsWavesAboveFittedShapesAsTheStandardSays
   AutomaticSteps.KeepTheirToleranceAndEstimateTheirErrorWithinAFactorOfThree
   EqualizerBands.AddUpToTheFilterOfOneStep
   FractionalFilter.ReportsThatTheAccuracyIsNotReached
-  FractionalFilter.IdealResponseInFullSpectrumIsExact
-  FixedBoundary.FilterEqualsAllEigenvectorsOfTheInterior
   FixedSteps.ConvergeToTheFlowAtFirstOrder
   MidpointSteps.ConvergeToTheSameFlowAtSecondOrder
   TruncatedSteps.ComputeOneBasisWhereTheResidualIsKept
@@ -21,7 +15,6 @@ set_tests_properties(
   TruncatedSteps.ComputeEveryBasisOnceTheAccuracyIsNotReached
   TruncatedSteps.ComputeEveryBasisWhereMemoryIsShort
   TruncatedSteps.AreBitIdenticalForEveryNumberOfThreads
-  TruncatedBasis.AgreesWithTheDenseSolver
   TruncatedBasisSlices.MissNoPair
   TruncatedBasisSlices.FindEveryCopyOfAMultipleEigenvalue
   TruncatedBasisSlices.MissNoPairOfManyEqualParts

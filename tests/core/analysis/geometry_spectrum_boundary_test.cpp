@@ -3,54 +3,18 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <string>
 
 #include "core/laplacian/interior.h"
 #include "core/mesh/mesh.h"
 #include "core/mesh/surface.h"
-#include "core/support/errors.h"
-#include "support/dense_eigenpairs.h"
-#include "support/evaluation.h"
 #include "support/geometry_spectra.h"
+#include "support/shapes.h"
 
 namespace spectral {
 namespace {
 
 using testing::Mesh;
-using testing::Operator;
 using testing::spectrumOf;
-
-/// Open surfaces, the last one joined with a closed one.
-std::vector<Mesh> openMeshes() {
-    return {testing::hemisphere(14), testing::withNoise(testing::rectangle(2, 1, 32, 16), 0.01, 3),
-            testing::joined(testing::withNoise(testing::icosphere(2), 0.05, 5),
-                            testing::withNoise(testing::hemisphere(8), 0.01, 2))};
-}
-
-TEST(GeometrySpectrumWithFixedBoundary, AgreesWithAllEigenvectorsOfTheInterior) {
-    for (const Mesh& mesh : openMeshes()) {
-        // By hand: U = X - H, H harmonic, W_II H_I = -W_IB X_B; minus the mean if none is fixed.
-        const Operator A(mesh);
-        const Components components = connectedComponents(mesh.F, mesh.V.rows());
-        const Interior interior(mesh.F, components, Boundary::Fixed);
-        const Laplacian inside = interior.restricted(A);
-        Eigen::MatrixXd centred = mesh.V;
-        A.constants.remove(A.D, centred);
-        const Eigen::MatrixXd WX = interior.restricted(Eigen::MatrixXd(A.W * centred));
-        Eigen::MatrixXd U = testing::denseSolution(Eigen::MatrixXd(inside.W), WX);
-        inside.constants.remove(inside.D, U);
-        const Eigen::VectorXd energies =
-            testing::innerProducts(denseBasis(inside).Phi, inside.D, U).rowwise().squaredNorm();
-        const GeometrySpectrum spectrum =
-            spectrumOf(mesh, static_cast<int>(mesh.V.rows()), Boundary::Fixed);
-        ASSERT_EQ(spectrum.amplitudes.size(), energies.size());
-        EXPECT_NEAR(spectrum.area / A.area(), 1.0, 1e-12);
-        EXPECT_NEAR(spectrum.totalEnergy / energies.sum(), 1.0, 1e-6);
-        EXPECT_LT(
-            (spectrum.amplitudes.array().square() * A.area() - energies.array()).abs().maxCoeff(),
-            1e-6 * energies.maxCoeff());
-    }
-}
 
 TEST(GeometrySpectrumWithFixedBoundary, ShowsOnlyAWaveThatVanishesOnTheBoundary) {
     // Height e sin(p pi x / a) sin(q pi y / b) on a flat rectangle a x b, whose plane is determined
@@ -105,19 +69,6 @@ TEST(GeometrySpectrumWithFixedBoundary, IsOneFrequencyForASingleInteriorVertex) 
     EXPECT_EQ(spectrum.frequencies.size(), 1);
     EXPECT_GT(spectrum.totalEnergy, 0.0);
     EXPECT_EQ(spectrum.octaveEnergies.size(), 1);
-}
-
-TEST(GeometrySpectrumWithFixedBoundary, IsRejectedIfTheBoundaryDeterminesTheWholeShape) {
-    Mesh flat = testing::rectangle(2, 1, 8, 4);
-    flat.V.rowwise() += Eigen::RowVector3d(100, -50, 3);
-    for (const Mesh& mesh : {testing::rectangle(1, 1, 1, 1), flat}) {
-        try {
-            spectrumOf(mesh, 10, Boundary::Fixed);
-            FAIL() << "a spectrum of nothing";
-        } catch (const InvalidOption& error) {
-            EXPECT_EQ(error.code(), ErrorCode::BoundaryFixesAll);
-        }
-    }
 }
 
 }  // namespace

@@ -3,22 +3,18 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <string>
 #include <vector>
 
 #include "core/analysis/bands.h"
-#include "core/laplacian/interior.h"
 #include "core/mesh/measures.h"
 #include "core/mesh/mesh.h"
-#include "core/support/errors.h"
-#include "support/evaluation.h"
 #include "support/geometry_spectra.h"
+#include "support/shapes.h"
 
 namespace spectral {
 namespace {
 
 using testing::Mesh;
-using testing::Operator;
 using testing::spectrumOf;
 using testing::withBasis;
 
@@ -27,27 +23,6 @@ std::vector<Mesh> classesOfMeshes() {
             testing::joined(testing::withNoise(testing::icosphere(2), 0.05, 5),
                             testing::torus(2, 0.7, 16, 8)),
             testing::withNoise(testing::icosphere(3), 0.005, 4)};
-}
-
-TEST(GeometrySpectrum, ContainsAllEnergyOfTheShape) {
-    for (const Mesh& mesh : classesOfMeshes())
-        for (const int basisSize : {0, 50, 5000}) {
-            const Operator A(mesh);
-            Eigen::MatrixXd X = mesh.V;
-            A.constants.remove(A.D, X);
-            const double energy = X.rowwise().squaredNorm().dot(A.D);
-
-            const GeometrySpectrum spectrum = spectrumOf(mesh, basisSize);
-            EXPECT_NEAR(spectrum.totalEnergy / energy, 1.0, 1e-12);
-            EXPECT_NEAR(spectrum.octaveEnergies.sum() / energy, 1.0, 1e-12);
-            EXPECT_NEAR(spectrum.octaveAmplitudes.squaredNorm() * A.area() / energy, 1.0, 1e-12);
-            EXPECT_GE(spectrum.octaveEnergies.minCoeff(), 0.0);
-            EXPECT_LT(spectrum.mismatch, 1e-3);
-            const Index last = spectrum.cumulativeEnergy.size() - 1;
-            EXPECT_EQ(spectrum.cumulativeEnergy[last], 1.0);
-            for (Index j = 0; j < last; ++j)
-                EXPECT_LE(spectrum.cumulativeEnergy[j], spectrum.cumulativeEnergy[j + 1]);
-        }
 }
 
 TEST(GeometrySpectrum, IsOneFrequencyForASphere) {
@@ -94,31 +69,6 @@ TEST(GeometrySpectrum, ShowsAWaveOnARectangleInItsOctaveWithItsAmplitude) {
         EXPECT_NEAR(spectrum.octaveAmplitudes[j] / std::sqrt(squares), 1.0, 0.01)
             << "basis " << basisSize;
     }
-}
-
-TEST(GeometrySpectrum, ShowsABumpySphereInItsOctaveWithItsAmplitude) {
-    // Radius 1 + e P_l(z): a bump in the direction of the normal, whose coordinates are harmonics
-    // of l - 1 and l + 1. Its root mean square is e / sqrt(2 l + 1), up to the change of the
-    // harmonics with the surface, which is of relative order 1 / l.
-    const double e = 0.02;
-    const int l = 14;
-    Mesh mesh = testing::icosphere(5);
-    for (Index i = 0; i < mesh.V.rows(); ++i) {
-        const double z = mesh.V(i, 2);
-        double before = 1.0, legendre = z;
-        for (int d = 1; d < l; ++d) {
-            const double next = ((2 * d + 1) * z * legendre - d * before) / (d + 1);
-            before = legendre;
-            legendre = next;
-        }
-        mesh.V.row(i) *= 1.0 + e * legendre;
-    }
-    const GeometrySpectrum spectrum = spectrumOf(mesh, 20);
-    const Index j = octaveOf(spectrum, 2.0 * kPi / std::sqrt(l * (l + 1.0)));
-    EXPECT_NEAR(spectrum.octaveAmplitudes[j] / (e / std::sqrt(2.0 * l + 1.0)), 1.0, 1.5 / l);
-    Eigen::VectorXd others = spectrum.octaveAmplitudes;
-    others[j] = others[0] = 0.0;  // octave 0 is the sphere itself
-    EXPECT_LT(others.maxCoeff(), 0.1 * spectrum.octaveAmplitudes[j]);
 }
 
 TEST(GeometrySpectrum, DoesNotDependOnTheResolutionForLargeFeatures) {
@@ -234,63 +184,6 @@ TEST(GeometrySpectrum, HasNoEmptyOctavesForATriangleWithoutArea) {
     EXPECT_EQ(spectrum.cumulativeEnergy.size(), last + 1);
     EXPECT_LT(last, 3 * octaves);
     EXPECT_NEAR(spectrum.octaveEnergies.sum() / spectrum.totalEnergy, 1.0, 1e-12);
-}
-
-TEST(GeometrySpectrum, IsFiniteOrRejectedIfPartsAreFarApart) {
-    // Components of a few vertices so far apart that round-off destroys their shape.
-    for (const double distance : {1e9, 1e13, 1e16}) {
-        Mesh mesh = testing::icosphere(0);
-        for (int i = 1; i < 4; ++i) {
-            Mesh far = testing::icosphere(0);
-            far.V.col(i % 3).array() += i * distance;
-            mesh = testing::joined(mesh, far);
-        }
-        for (const int basisSize : {0, 20}) try {
-                const GeometrySpectrum spectrum = geometrySpectrum(
-                    mesh.V, mesh.F, withBasis(basisSize, LaplacianKind::IntrinsicDelaunay));
-                EXPECT_TRUE(spectrum.octaveEnergies.allFinite()) << distance;
-                EXPECT_GT(spectrum.octaveEnergies.size(), 0) << distance;
-            } catch (const Error& error) {
-                EXPECT_NE(std::string(error.what()), "") << distance;
-            }
-    }
-}
-
-TEST(GeometrySpectrum, RejectsInvalidMeshesAndSizes) {
-    const Mesh mesh = testing::icosphere(2);
-    EXPECT_THROW(spectrumOf(mesh, -1), InvalidOption);
-    const Mesh large = testing::icosphere(4);
-    try {
-        spectrumOf(large, static_cast<int>(large.V.rows()));
-        FAIL() << "a dense basis of " << large.V.rows() << " vertices";
-    } catch (const InvalidOption& error) {
-        EXPECT_EQ(error.code(), ErrorCode::BasisTooLarge);
-        EXPECT_EQ(error.limit(), 2561);
-    }
-    EXPECT_THROW(geometrySpectrum(Vertices(0, 3), Faces(0, 3), {}), InvalidMesh);
-    EXPECT_THROW(geometrySpectrum(mesh.V, Faces(0, 3), {}), InvalidMesh);
-    Mesh broken = mesh;
-    broken.V(5, 1) = std::nan("");
-    EXPECT_THROW(geometrySpectrum(broken.V, broken.F, {}), InvalidMesh);
-}
-
-TEST(GeometrySpectrum, CanBeInterruptedAtAnyStage) {
-    const Mesh mesh = testing::blob();
-    int reports = 0;
-    const Progress counting([&](double, const std::string&) { return ++reports > 0; });
-    geometrySpectrum(mesh.V, mesh.F, withBasis(20), counting);
-    ASSERT_GT(reports, 3);
-    // The number of reports from the harmonics depends on the threads.
-    for (int stop = 1; stop <= reports; stop += 1 + stop / 8) {
-        int seen = 0;
-        const Progress progress([&](double, const std::string&) { return ++seen < stop; });
-        try {
-            geometrySpectrum(mesh.V, mesh.F, withBasis(20), progress);
-            EXPECT_LT(seen, stop);
-        } catch (const Cancelled&) {
-            EXPECT_EQ(seen, stop);
-        }
-    }
 }
 
 }  // namespace

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/Geometry>
+#include <Eigen/Cholesky>
 #include <cmath>
 #include <functional>
 #include <string>
@@ -19,7 +19,6 @@ using testing::cube;
 using testing::icosphere;
 using testing::Mesh;
 using testing::rectangle;
-using testing::torus;
 
 TextureOptions withWaviness(double waviness) {
     TextureOptions options;
@@ -66,78 +65,6 @@ std::function<double(double)> waveOf(double amplitude, double length) {
     return [=](double along) { return amplitude * std::cos(2.0 * kPi * along / length); };
 }
 
-/// The parameters of a sinusoid of this amplitude.
-void expectSinusoid(const SurfaceTexture& texture, double amplitude) {
-    EXPECT_NEAR(texture.Sa, 2.0 / kPi * amplitude, 0.01 * 2.0 / kPi * amplitude);
-    EXPECT_NEAR(texture.Sq, amplitude / std::sqrt(2.0), 0.01 * amplitude / std::sqrt(2.0));
-    EXPECT_NEAR(texture.Ssk, 0.0, 0.01);
-    EXPECT_NEAR(texture.Sku, 1.5, 0.015);
-    EXPECT_NEAR(texture.Sp, amplitude, 0.01 * amplitude);
-    EXPECT_NEAR(texture.Sv, amplitude, 0.01 * amplitude);
-    EXPECT_NEAR(texture.Sz, 2.0 * amplitude, 0.01 * 2.0 * amplitude);
-    EXPECT_TRUE(texture.accuracyReached);
-}
-
-TEST(SurfaceTexture, OfASinusoidOnAPlaneIsTheClosedForm) {
-    const auto wave = waveOf(0.01, 1.0);
-    const SurfaceTexture texture =
-        measured(plane(20.0, 240, [&](double x, double y) { return wave(0.8 * x + 0.6 * y); }),
-                 withWaviness(4.0));
-    expectSinusoid(texture, 0.01);
-    // The slope of waves that are linear between twelve vertices is 1 % too small.
-    EXPECT_NEAR(texture.Sdq, 2.0 * kPi * 0.01 / std::sqrt(2.0), 0.02 * 0.0444);
-    EXPECT_NEAR(texture.Sdr, 0.5 * std::pow(2.0 * kPi * 0.01, 2) / 2.0, 0.03 * 0.000987);
-    EXPECT_NEAR(texture.area, 12.0 * 12.0, 0.1 * 144.0);
-    EXPECT_GT(texture.leftOut, 0);
-    EXPECT_EQ(texture.evaluated + texture.leftOut, 241 * 241);
-}
-
-TEST(SurfaceTexture, OfASinusoidOnACylinderIsTheClosedForm) {
-    const double radius = 60.0 / (2.0 * kPi);
-    const double a = 0.02;
-    const auto wave = waveOf(a, 1.0);
-    // 48 waves around, so that they meet.
-    const Mesh mesh = cylinder(radius, 16.0, 720, 192, [&](double u, double z) {
-        return radius + wave(0.8 * u + 0.6 * z);
-    });
-    expectSinusoid(measured(mesh, withWaviness(4.0)), a);
-}
-
-/// Mean of sin^p over a sphere, of the polar angle.
-double meanPowerOfSine(double p) {
-    constexpr int kPoints = 20000;
-    double sum = 0.0;
-    for (int k = 0; k < kPoints; ++k)
-        sum += std::pow(1.0 - std::pow((2.0 * k + 1.0) / kPoints - 1.0, 2), 0.5 * p) / kPoints;
-    return sum;
-}
-
-TEST(SurfaceTexture, OfASectoralHarmonicOnASphereIsTheClosedForm) {
-    constexpr int l = 29;  // twelve edges a wave
-    constexpr double a = 0.0005;
-    Mesh mesh = icosphere(6);
-    const Eigen::Matrix3d axes =
-        Eigen::AngleAxisd(1.0, Eigen::Vector3d(1.0, 2.0, 3.0).normalized()).toRotationMatrix();
-    for (Index i = 0; i < mesh.V.rows(); ++i) {
-        const Eigen::Vector3d p = axes * mesh.V.row(i).transpose();
-        mesh.V.row(i) *= 1.0 + a * std::pow(std::hypot(p.x(), p.y()), l) *
-                                   std::cos(l * std::atan2(p.y(), p.x()));
-    }
-    const double wave = 2.0 * kPi / std::sqrt(l * (l + 1.0));
-    const SurfaceTexture texture = measured(mesh, withWaviness(4.0 * wave));
-    // Waves a sin^l(theta) cos(l phi): the parameters of a cosine times moments of the sine.
-    const double Sa = a * 2.0 / kPi * meanPowerOfSine(l);
-    const double Sq = a * std::sqrt(0.5 * meanPowerOfSine(2 * l));
-    const double Sku = std::pow(a, 4) * 0.375 * meanPowerOfSine(4 * l) / std::pow(Sq, 4);
-    EXPECT_NEAR(texture.Sa, Sa, 0.01 * Sa);
-    EXPECT_NEAR(texture.Sq, Sq, 0.01 * Sq);
-    // Waves shrink the surface under them, by the square of their slope.
-    EXPECT_NEAR(texture.Ssk, 0.0, 0.02);
-    EXPECT_NEAR(texture.Sku, Sku, 0.01 * Sku);
-    EXPECT_NEAR(texture.Sz, 2.0 * a, 0.01 * 2.0 * a);
-    EXPECT_EQ(texture.leftOut, 0);
-}
-
 /// Amplitude of a wave in the evaluated heights: its least-squares fit.
 double amplitudeOf(const Eigen::VectorXd& height, const Eigen::VectorXd& phase) {
     Eigen::Matrix2d A = Eigen::Matrix2d::Zero();
@@ -169,21 +96,6 @@ TEST(SurfaceTexture, TransmitsWavesOnAPlaneAsTheStandardsGaussian) {
                     std::exp2(-std::pow(1.0 / length, 2)) - std::exp2(-std::pow(2.0 / length, 2)),
                     0.01)
             << length;
-    }
-}
-
-TEST(SurfaceTexture, TransmitsWavesOnACylinderAsTheStandardsGaussian) {
-    constexpr double a = 0.01;
-    const double radius = 64.0 / (2.0 * kPi);
-    for (const double length : {1.0, 2.0, 4.0, 8.0, 16.0}) {
-        const auto wave = waveOf(a, length);
-        const Mesh mesh =
-            cylinder(radius, 24.0, 384, 144, [&](double u, double) { return radius + wave(u); });
-        Eigen::VectorXd phase(mesh.V.rows());
-        for (Index i = 0; i < phase.size(); ++i)
-            phase[i] = std::atan2(mesh.V(i, 1), mesh.V(i, 0)) * radius * 2.0 * kPi / length;
-        const double rough = amplitudeOf(measured(mesh, withWaviness(4.0)).height, phase) / a;
-        EXPECT_NEAR(rough, 1.0 - std::exp2(-std::pow(4.0 / length, 2)), 0.01) << length;
     }
 }
 
@@ -362,53 +274,6 @@ TEST(SurfaceTexture, RefusesWhatHasTwoSidesOrTwoUnits) {
         } catch (const InvalidOption& error) {
             EXPECT_NE(std::string(error.what()).find("divide z by 1000"), std::string::npos);
         }
-}
-
-TEST(SurfaceTexture, ScalesWithTheMeshAndTurnsWithIt) {
-    Mesh mesh = testing::withNoise(torus(1.0, 0.4, 90, 50), 0.003, 5);
-    const SurfaceTexture one = measured(mesh, withWaviness(0.4));
-    const Eigen::Matrix3d R =
-        Eigen::AngleAxisd(1.1, Eigen::Vector3d(1.0, 2.0, -1.0).normalized()).toRotationMatrix();
-    mesh.V = (1000.0 * mesh.V * R.transpose()).eval();
-    mesh.V.rowwise() += Eigen::RowVector3d(5.0, -900.0, 3000.0);
-    const SurfaceTexture other = measured(mesh, withWaviness(400.0));
-    EXPECT_LT((other.height - 1000.0 * one.height).cwiseAbs().maxCoeff(), 1e-3 * one.Sq * 1000.0);
-    EXPECT_NEAR(other.Sq, 1000.0 * one.Sq, 1e-3 * other.Sq);
-    EXPECT_NEAR(other.Sdr, one.Sdr, 1e-3 * one.Sdr);
-    EXPECT_NEAR(other.Sku, one.Sku, 1e-3 * one.Sku);
-}
-
-TEST(SurfaceTexture, OfASmoothSphereIsNextToNothing) {
-    const SurfaceTexture texture = measured(icosphere(4), withWaviness(0.5));
-    EXPECT_LT(texture.Sq, 1e-3);
-}
-
-TEST(SurfaceTexture, LeavesOutCreasesUnlessTheyAreKept) {
-    const Mesh mesh = cube(24);
-    TextureOptions options = withWaviness(0.4);
-    const SurfaceTexture flat = measured(mesh, options);
-    EXPECT_GT(flat.leftOut, 0);
-    EXPECT_GT(flat.evaluated, 0);
-    options.creaseAngle = 180.0;
-    const SurfaceTexture all = measured(mesh, options);
-    EXPECT_EQ(all.leftOut, 0);
-    EXPECT_LT(flat.Sz, 0.1 * all.Sz);
-}
-
-TEST(SurfaceTexture, RefusesSizesThatDoNotFit) {
-    const Mesh mesh = rectangle(1.0, 1.0, 10, 10);
-    EXPECT_THROW(measured(mesh, withWaviness(0.0)), InvalidOption);
-    EXPECT_THROW(measured(mesh, withWaviness(std::nan(""))), InvalidOption);
-    EXPECT_THROW(measured(mesh, withWaviness(3.0)), InvalidOption);  // all is near the boundary
-    TextureOptions options = withWaviness(0.2);
-    options.noise = 0.3;
-    EXPECT_THROW(measured(mesh, options), InvalidOption);
-    options.noise = 0.0;
-    options.formSize = 0.1;
-    EXPECT_THROW(measured(mesh, options), InvalidOption);
-    options.formSize = 0.0;
-    options.creaseAngle = 181.0;
-    EXPECT_THROW(measured(mesh, options), InvalidOption);
 }
 
 }  // namespace

@@ -13,7 +13,6 @@
 #include "core/mesh/surface.h"
 #include "core/support/errors.h"
 #include "core/transfer/transfer_function.h"
-#include "support/dense_eigenpairs.h"
 #include "support/evaluation.h"
 
 namespace spectral {
@@ -64,54 +63,6 @@ FilterOptions smoothing(const Mesh& mesh, int steps, BasisUpdate update = BasisU
     options.evaluation.accuracy = 1e-9;
     return options;
 }
-
-/// H + F(sqrt(A_II)) (X - H) by dense solvers: harmonic extension and eigenvectors of the interior.
-class DenseFilter {
-  public:
-    explicit DenseFilter(const Mesh& mesh) : X_(mesh.V) {
-        const Operator A(mesh);
-        const Eigen::MatrixXd W(A.W);
-        const std::vector<bool> onBoundary = boundaryVertices(mesh.F, mesh.V.rows());
-        const Components components = connectedComponents(mesh.F, mesh.V.rows());
-        for (int c = 0; c < components.count; ++c) {
-            std::vector<Index> I, B;
-            for (Index i = 0; i < mesh.V.rows(); ++i)
-                if (components.label[i] == c) (onBoundary[i] ? B : I).push_back(i);
-            if (I.empty()) continue;
-            const Eigen::MatrixXd W_II = W(I, I);
-            const Eigen::VectorXd D = A.D(I);
-            const auto [lambda, Phi] = testing::denseEigenpairs(W_II, D);
-            Eigen::MatrixXd H_I(I.size(), 3);
-            if (B.empty()) {
-                H_I.rowwise() = Eigen::RowVector3d(A.constants.means(A.D, mesh.V).row(c));
-            } else {
-                const Eigen::MatrixXd W_IB = W(I, B), V_B = mesh.V(B, Eigen::indexing::all);
-                H_I = -testing::denseSolution(W_II, W_IB * V_B);
-            }
-            const Eigen::MatrixXd U = mesh.V(I, Eigen::indexing::all) - H_I;
-            parts_.push_back(
-                {I, H_I, lambda.cwiseMax(0.0).cwiseSqrt(), Phi, testing::innerProducts(Phi, D, U)});
-        }
-    }
-
-    Vertices operator()(const Gain& gain) const {
-        Vertices Y = X_;
-        for (const Part& part : parts_)
-            Y(part.I, Eigen::indexing::all) =
-                part.H + part.Phi * part.omega.unaryExpr(gain).asDiagonal() * part.spectrum;
-        return Y;
-    }
-
-  private:
-    struct Part {
-        std::vector<Index> I;
-        Vertices H;
-        Eigen::VectorXd omega;
-        Eigen::MatrixXd Phi, spectrum;
-    };
-    Vertices X_;
-    std::vector<Part> parts_;
-};
 
 TEST(BoundaryVertices, AreTheEndsOfEdgesOfOneTriangle) {
     const std::vector<bool> rim = boundaryVertices(testing::rectangle(1, 1, 6, 4).F, 35);
@@ -181,20 +132,6 @@ TEST(FixedHarmonics, OfTheHemisphereAreTheSpheresOddOnes) {
             EXPECT_NEAR(lambda[i] / (l * (l + 1.0)), 1.0, 0.01) << l;
 }
 
-TEST(FixedHarmonics, AreZeroOnTheBoundaryAndOrthonormal) {
-    for (const Mesh& mesh : openMeshes()) {
-        HarmonicsOptions options;
-        options.basisSize = 20;
-        options.boundary = Boundary::Fixed;
-        const ManifoldHarmonics harmonics = manifoldHarmonics(mesh.V, mesh.F, options);
-        const std::vector<bool> onBoundary = boundaryVertices(mesh.F, mesh.V.rows());
-        for (Index i = 0; i < mesh.V.rows(); ++i)
-            EXPECT_TRUE(!onBoundary[i] || (harmonics.Phi.row(i).array() == 0.0).all());
-        const Eigen::VectorXd D = lumpedMass(mesh.V, mesh.F);
-        EXPECT_LT(testing::orthonormalityError(harmonics.Phi, D), 1e-9);
-    }
-}
-
 TEST(FixedHarmonics, OfAClosedMeshAreTheFreeOnes) {
     const Mesh mesh = testing::blob();
     HarmonicsOptions options;
@@ -229,24 +166,6 @@ TEST(HarmonicExtension, ReproducesALinearFunctionOnAFlatMesh) {
         HarmonicExtension(interior).remainder(A, interior.restricted(A), flat.V);
     EXPECT_LT(remainder.U.cwiseAbs().maxCoeff(), 1e-14);
     EXPECT_LT(remainder.relativeSize, 1e-14);
-}
-
-TEST(FixedBoundary, FilterEqualsAllEigenvectorsOfTheInterior) {
-    for (const Mesh& mesh : openMeshes()) {
-        FilterOptions options = smoothing(mesh, 1);
-        options.laplacian = LaplacianKind::Cotangent;
-        options.evaluation.accuracy = 1e-8;
-        const DenseFilter dense(mesh);
-        for (const auto& transfer : testing::smoothTransferFunctions()) {
-            options.transferFunction = transfer;
-            const FilterResult result = fractionalFilter(mesh.V, mesh.F, options);
-            const TransferFunction F(transfer, result.cutoffFrequency);
-            EXPECT_TRUE(result.accuracyReached);
-            EXPECT_LT(largestDifference(result.V, dense(fractionalPower(F, 1.0))),
-                      1e-7 * boundingBoxDiagonal(mesh.V))
-                << testing::describe(transfer);
-        }
-    }
 }
 
 TEST(FixedBoundary, StaysBitIdentical) {
@@ -316,31 +235,6 @@ TEST(FixedBoundary, FiltersEveryComponentAsIfItWereAlone) {
     }
 }
 
-TEST(FixedBoundary, MovesNothingOnASingleTriangle) {
-    const Mesh mesh = triangle();
-    for (const int steps : {0, 3})
-        for (const Spectrum spectrum : {Spectrum::Full, Spectrum::Truncated}) {
-            FilterOptions options = smoothing(mesh, steps);
-            options.evaluation.spectrum = spectrum;
-            const FilterResult result = fractionalFilter(mesh.V, mesh.F, options);
-            EXPECT_TRUE(result.V == mesh.V);
-            EXPECT_EQ(result.maxDisplacement, 0.0);
-            EXPECT_EQ(result.fixedVertices, 3);
-        }
-}
-
-TEST(FixedBoundary, MovesASingleVertexInside) {
-    const Mesh mesh = testing::withNoise(testing::rectangle(1, 1, 2, 2), 0.1, 3);
-    FilterOptions options = smoothing(mesh, 1);
-    options.laplacian = LaplacianKind::Cotangent;
-    options.evaluation.accuracy = 1e-12;
-    const FilterResult result = fractionalFilter(mesh.V, mesh.F, options);
-    const TransferFunction F(options.transferFunction, result.cutoffFrequency);
-    EXPECT_LT(largestDifference(result.V, DenseFilter(mesh)(fractionalPower(F, 1.0))), 1e-12);
-    EXPECT_EQ(result.fixedVertices, 8);
-    EXPECT_GT(result.maxDisplacement, 1e-4);
-}
-
 TEST(FixedBoundary, ABasisThatTheInteriorCannotHoldIsRefused) {
     const Mesh mesh = testing::rectangle(1, 1, 4, 4);  // nine vertices inside
     FilterOptions options = smoothing(mesh, 1);
@@ -366,16 +260,6 @@ TEST(FixedBoundary, AutomaticStepsReachTheLimitOfManySteps) {
     EXPECT_TRUE(finer.toleranceReached);
     EXPECT_GT(finer.steps, automatic.steps);
     EXPECT_LT(largestDifference(automatic.V, finer.V), 50.0 * options.tolerance);
-}
-
-TEST(FixedBoundary, IdealResponseKeepsTheHarmonicsBelowItsCutoff) {
-    const Mesh mesh = openBlob();
-    FilterOptions options = smoothing(mesh, 1);
-    options.laplacian = LaplacianKind::Cotangent;
-    options.transferFunction.response = Response::Ideal;
-    const FilterResult result = fractionalFilter(mesh.V, mesh.F, options);
-    const TransferFunction F(options.transferFunction, result.cutoffFrequency);
-    EXPECT_LT(largestDifference(result.V, DenseFilter(mesh)(fractionalPower(F, 1.0))), 1e-8);
 }
 
 }  // namespace

@@ -197,27 +197,6 @@ TEST(FractionalFilter, LowPassLowersTheDirichletEnergy) {
     }
 }
 
-TEST(FractionalFilter, IdealResponseInFullSpectrumIsExact) {
-    for (const Mesh& mesh : {testing::blob(), testing::withNoise(testing::icosphere(2), 0.05, 9)}) {
-        const Operator A(mesh);
-        const HarmonicBasis dense = denseBasis(A);
-        for (const FilterType type : {FilterType::LowPass, FilterType::HighPass,
-                                      FilterType::BandPass, FilterType::BandStop})
-            for (const double feature : {2.0, 0.002}) {  // the smaller one beyond all harmonics
-                FilterOptions options = smoothing(mesh, 1, BasisUpdate::Full);
-                options.laplacian = LaplacianKind::Cotangent;
-                options.transferFunction.type = type;
-                options.transferFunction.response = Response::Ideal;
-                options.featureSize *= feature;
-                const TransferFunction F(options.transferFunction, 2.0 * kPi / options.featureSize);
-                const Vertices expected = testing::filteredDense(A, dense, fractionalPower(F, 1.0));
-                const Vertices Y = fractionalFilter(mesh.V, mesh.F, options).V;
-                EXPECT_LT(largestDifference(Y, expected), 1e-8)
-                    << testing::describe(options.transferFunction) << ", " << mesh.V.rows();
-            }
-    }
-}
-
 TEST(FractionalFilter, LeavesUnreferencedVerticesAlone) {
     const Mesh mesh = testing::blob();
     Vertices V(mesh.V.rows() + 2, 3);

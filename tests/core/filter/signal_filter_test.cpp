@@ -6,18 +6,15 @@
 #include <limits>
 #include <random>
 
-#include "core/harmonics/harmonic_basis.h"
 #include "core/mesh/measures.h"
 #include "core/support/errors.h"
-#include "core/support/frequency.h"
-#include "support/evaluation.h"
+#include "support/shapes.h"
 
 namespace spectral {
 namespace {
 
 using testing::classesOfMeshes;
 using testing::Mesh;
-using testing::Operator;
 
 constexpr double kAccuracy = 1e-6;
 
@@ -65,32 +62,6 @@ TEST(SignalFilter, OfASphereConvergesToTheClosedFormAtSecondOrder) {
     EXPECT_GT(middle / fine, 3.5);
 }
 
-/// The same on a flat a x b rectangle, whose harmonics with a free boundary are products of cosines
-/// and with a fixed one of sines.
-double rectangleError(int cells, Boundary boundary) {
-    const double a = 2.0, b = 1.0;
-    const Mesh mesh = testing::rectangle(a, b, 2 * cells, cells);
-    const double p = 3.0 * kPi / a, q = 2.0 * kPi / b;
-    Eigen::VectorXd Q(mesh.V.rows());
-    for (Index i = 0; i < Q.size(); ++i) {
-        const double x = p * mesh.V(i, 0), y = q * mesh.V(i, 1);
-        Q[i] = boundary == Boundary::Free ? std::cos(x) * std::cos(y) : std::sin(x) * std::sin(y);
-    }
-    SignalFilterOptions options;
-    options.featureSize = 0.8;
-    options.boundary = boundary;
-    const double x = std::hypot(p, q) * options.featureSize / (2.0 * kPi);
-    return largest(filtered(mesh, Q, options) - std::exp2(-0.5 * x * x) * Q);
-}
-
-TEST(SignalFilter, OfAFlatRectangleConvergesToTheClosedForm) {
-    for (const Boundary boundary : {Boundary::Free, Boundary::Fixed}) {
-        const double coarse = rectangleError(16, boundary), fine = rectangleError(32, boundary);
-        EXPECT_LT(fine, 0.01);
-        EXPECT_GT(coarse / fine, 3.0);
-    }
-}
-
 TEST(SignalFilter, IsLinear) {
     for (const Mesh& mesh : classesOfMeshes()) {
         const Eigen::MatrixXd P = noise(mesh.V.rows(), 1, 1), Q = noise(mesh.V.rows(), 1, 2);
@@ -102,20 +73,6 @@ TEST(SignalFilter, IsLinear) {
                 largest(sum - 3.0 * filtered(mesh, P, options) + 0.5 * filtered(mesh, Q, options)),
                 4.0 * kAccuracy * range(P));
         }
-    }
-}
-
-TEST(SignalFilter, KeepsTheMeanOfEveryComponentWhateverTheGainThere) {
-    for (const Mesh& mesh : classesOfMeshes()) {
-        const Operator A(mesh);
-        Eigen::MatrixXd Q = noise(mesh.V.rows(), 2, 4);
-        Q.col(0).array() += 3.0;
-        SignalFilterOptions highPass = lowPass(mesh);
-        highPass.transferFunction.type = FilterType::HighPass;
-        for (const SignalFilterOptions& options : {lowPass(mesh), highPass})
-            EXPECT_LT(largest(A.constants.means(A.D, filtered(mesh, Q, options)) -
-                              A.constants.means(A.D, Q)),
-                      1e-12);
     }
 }
 
@@ -142,19 +99,6 @@ TEST(SignalFilter, DoesNotDependOnScaleAndOffsetOfTheValues) {
         EXPECT_LT(largest(filtered(mesh, scale * Q, lowPass(mesh)) / scale - Y), 1e-12);
     const Eigen::MatrixXd offset = (Q.array() + 1e6).matrix();
     EXPECT_LT(largest((filtered(mesh, offset, lowPass(mesh)).array() - 1e6).matrix() - Y), 1e-8);
-}
-
-TEST(SignalFilter, WithIdealResponseIsExact) {
-    for (const Mesh& mesh : classesOfMeshes()) {
-        const Operator A(mesh);
-        const HarmonicBasis dense = denseBasis(A);
-        SignalFilterOptions options = lowPass(mesh, 0.4);
-        options.transferFunction.response = Response::Ideal;
-        const TransferFunction F(options.transferFunction, cutoffFrequency(options.featureSize));
-        const Eigen::MatrixXd Q = noise(mesh.V.rows(), 3, 7);
-        const Eigen::MatrixXd expected = applyInBasis(dense, A, fractionalPower(F, 1.0), 0.0, Q);
-        EXPECT_LT(largest(filtered(mesh, Q, options) - expected), kAccuracy);
-    }
 }
 
 TEST(SignalFilter, LeavesUnreferencedAndFixedVerticesBitForBitUnchanged) {
@@ -199,36 +143,6 @@ TEST(SignalFilter, CountsAndLocatesInfiniteValues) {
     EXPECT_EQ(message(), "2 vertices have an infinite value, the first is vertex 17");
 }
 
-TEST(SignalFilter, TreatsVerticesWithoutDataAsHoles) {
-    const Mesh mesh = testing::icosphere(3);
-    Eigen::MatrixXd Q = noise(mesh.V.rows(), 1, 9);
-    Eigen::VectorXd hole = Q;
-    Faces rest(mesh.F.rows(), 3);
-    Index triangles = 0, without = 0;
-    for (Index i = 0; i < Q.rows(); ++i)
-        if (mesh.V(i, 2) > 0.6) {
-            Q(i, 0) = std::nan("");
-            ++without;
-        }
-    for (Index t = 0; t < mesh.F.rows(); ++t)
-        if ((mesh.V(mesh.F.row(t).transpose(), 2).array() <= 0.6).all())
-            rest.row(triangles++) = mesh.F.row(t);
-    rest.conservativeResize(triangles, 3);
-
-    const FilteredSignal result = filterSignal(mesh.V, mesh.F, Q, lowPass(mesh));
-    const Eigen::MatrixXd expected = filterSignal(mesh.V, rest, hole, lowPass(mesh)).Y;
-    EXPECT_EQ(result.verticesWithoutData, without);
-    for (Index i = 0; i < Q.rows(); ++i) {
-        if (std::isnan(Q(i, 0)))
-            EXPECT_TRUE(std::isnan(result.Y(i, 0)));
-        else
-            EXPECT_EQ(result.Y(i, 0), expected(i, 0));
-    }
-    EXPECT_GT(result.rmsChange, 0.0);
-    Q.setConstant(std::nan(""));
-    EXPECT_THROW(filterSignal(mesh.V, mesh.F, Q, lowPass(mesh)), InvalidMesh);
-}
-
 TEST(SignalFilter, RefusesBadMeshesAndOptions) {
     const Mesh mesh = testing::icosphere(2);
     const Eigen::MatrixXd Q = noise(mesh.V.rows(), 1, 9);
@@ -239,24 +153,6 @@ TEST(SignalFilter, RefusesBadMeshesAndOptions) {
     options = lowPass(mesh);
     options.transferFunction.power = 2.0;
     EXPECT_THROW(filterSignal(mesh.V, mesh.F, Q, options), InvalidOption);
-}
-
-TEST(SignalFilter, ReportsAGainThatItCannotReach) {
-    const Mesh mesh = testing::blob();
-    SignalFilterOptions options = lowPass(mesh);
-    options.transferFunction.type = FilterType::BandStop;
-    options.transferFunction.power = 0.05;  // a cusp at the centre of the band
-    const FilteredSignal result =
-        filterSignal(mesh.V, mesh.F, noise(mesh.V.rows(), 1, 10), options);
-    EXPECT_FALSE(result.accuracyReached);
-    EXPECT_GT(result.errorEstimate, result.accuracy);
-}
-
-TEST(SignalFilter, CanBeInterrupted) {
-    const Mesh mesh = testing::blob();
-    const Progress progress([](double, const std::string&) { return false; });
-    EXPECT_THROW(filterSignal(mesh.V, mesh.F, noise(mesh.V.rows(), 1, 11), lowPass(mesh), progress),
-                 Cancelled);
 }
 
 }  // namespace

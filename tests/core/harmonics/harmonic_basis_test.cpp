@@ -93,27 +93,6 @@ TEST(TruncatedBasis, NeverSplitsTheSquaresMultipleEigenvalues) {
         EXPECT_EQ(lowestHarmonics(A, asked).size(), kept) << "asked for " << asked;
 }
 
-TEST(TruncatedBasis, AgreesWithTheDenseSolver) {
-    for (const Mesh& mesh :
-         {testing::blob(), testing::withNoise(testing::rectangle(2, 1, 20, 10), 0.02, 3),
-          testing::joined(testing::blob(), testing::torus(2, 0.7, 20, 10)), testing::cube(6),
-          testing::icosphere(2)}) {
-        const Operator A(mesh);
-        const HarmonicBasis dense = denseBasis(A);
-        const HarmonicBasis basis = lowestHarmonics(A, 60);
-        const Index k = basis.size();
-        ASSERT_GE(k, 60);
-        EXPECT_LT((basis.lambda - dense.lambda.head(k)).cwiseAbs().maxCoeff(),
-                  1e-9 * dense.lambda[k - 1]);
-        EXPECT_LT(orthonormalityError(basis.Phi, A.D), 1e-9);
-        EXPECT_LT(residual(A, basis), 1e-8);
-        // Eigenspaces, not vectors: the basis lies in the span of the dense one.
-        const Eigen::MatrixXd inDense =
-            testing::innerProducts(dense.Phi.leftCols(k), A.D, basis.Phi);
-        EXPECT_LT((inDense.colwise().norm().array() - 1.0).abs().maxCoeff(), 1e-9);
-    }
-}
-
 TEST(TruncatedBasis, ToleratesATriangleOfAlmostNoArea) {
     // It touches the surface at one vertex only. The masses of its other two are 1e-12 of the mean,
     // which makes the largest eigenvalues 1e12 times those of the surface.

@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "core/filter/fractional_filter.h"
-#include "core/mesh/measures.h"
 #include "core/support/errors.h"
 #include "core/support/types.h"
 #include "support/shapes.h"
@@ -147,19 +146,6 @@ TEST(OctaveEqualizer, ScalesRipplesByTheGainOfTheirSize) {
 TEST(OctaveEqualizer, KeepsRipplesBetweenTwoGainsOfOne) {
     const RippledSphere sphere;
     EXPECT_NEAR(sphere.heightAfter(RippledSphere::size() / 8, {0, 2, 1, 1, 1, 3}), 1.0, 0.01);
-}
-
-TEST(OctaveEqualizer, IsTheIdentityForGainsOfOne) {
-    const RippledSphere sphere;
-    FilterOptions options;
-    options.transferFunction.type = FilterType::Custom;
-    options.transferFunction.custom = octaveEqualizer(0.1, {1, 1, 1, 1, 1, 1});
-    options.featureSize = 0.8;
-    options.tolerance = 1e-3;
-    const FilterResult result = fractionalFilter(sphere.mesh.V, sphere.mesh.F, options);
-    EXPECT_EQ(result.V, sphere.mesh.V);
-    EXPECT_EQ(result.maxDisplacement, 0.0);
-    EXPECT_EQ(result.factorizations, 0);
 }
 
 }  // namespace

@@ -91,18 +91,6 @@ def test_other_meshes_of_the_set_are_unchanged(decimated: Callable[..., Any]) ->
     assert_same(before, snapshot(mesh_set.mesh(0)))
 
 
-def test_vertices_without_faces_stay_where_they_are(samples: Path) -> None:
-    mesh_set = pymeshlab.MeshSet()
-    mesh_set.load_new_mesh(str(samples / "bone.ply"))
-    mesh = mesh_set.current_mesh()
-    V, F = mesh.vertex_matrix().copy(), mesh.face_matrix()
-    lonely = np.setdiff1d(np.arange(len(V)), F)
-    assert len(lonely) > 100
-    report = mesh_set.apply_filter(FILTER, steps=2)
-    np.testing.assert_array_equal(mesh.vertex_matrix()[lonely], V[lonely])
-    assert report["unreferenced_vertices"] == len(lonely)
-
-
 @pytest.mark.parametrize("what", ["vertices", "faces"])
 def test_after_a_deletion_only_remaining_elements_count(
     what: str, decimated: Callable[..., Any], tmp_path: Path

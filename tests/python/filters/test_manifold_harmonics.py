@@ -157,17 +157,6 @@ def test_every_component_has_a_constant_first(decimated: Decimated) -> None:
     assert len(np.unique(quality)) == 2
 
 
-def test_vertices_without_faces_have_zero(samples: Path) -> None:
-    mesh_set = pymeshlab.MeshSet()
-    mesh_set.load_new_mesh(str(samples / "bone.ply"))
-    mesh = mesh_set.current_mesh()
-    lonely = np.setdiff1d(np.arange(mesh.vertex_number()), mesh.face_matrix())
-    assert len(lonely) > 100
-    mesh_set.apply_filter(HARMONICS, basis_size=5, store_basis=True)
-    assert (stored_basis(mesh, 5)[lonely] == 0).all()
-    assert (mesh.vertex_scalar_array()[lonely] == 0).all()
-
-
 def test_after_a_deletion_harmonics_are_at_the_remaining_vertices(
     decimated: Decimated, tmp_path: Path
 ) -> None:

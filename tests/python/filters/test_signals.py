@@ -270,22 +270,6 @@ def test_every_other_attribute_is_kept(name: str, decimated: Decimated) -> None:
     np.testing.assert_array_equal(mesh.bounding_box().max(), box.max())
 
 
-@pytest.mark.parametrize("name", TARGETS)
-def test_vertices_without_faces_keep_their_values(name: str, decimated: Decimated) -> None:
-    V, F = decimated("cow.obj")
-    with_lonely = np.vstack([V, V[:2] + 0.01])
-    levels = colours(with_lonely)
-    mesh_set = pymeshlab.MeshSet()
-    Q = noisy_field(with_lonely)
-    mesh_set.add_mesh(pymeshlab.Mesh(with_lonely, F, v_color_matrix=levels / 255, v_scalar_array=Q))
-    before = snapshot(mesh_set.current_mesh())[TARGETS[name]]
-    report = mesh_set.apply_filter(name, feature_size=percent(15))
-    after = snapshot(mesh_set.current_mesh())[TARGETS[name]]
-    np.testing.assert_array_equal(after[len(V) :], before[len(V) :])
-    assert not np.array_equal(after, before)
-    assert report["unreferenced_vertices"] == 2
-
-
 def test_after_a_deletion_only_remaining_vertices_count(decimated: Decimated) -> None:
     V, F = decimated("cow.obj")
     Q = noisy_field(V)
