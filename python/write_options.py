@@ -76,8 +76,13 @@ REPORTS = {
     "DenoiseReport": ("apply_coord_spectral_denoise", "`denoise_mesh`"),
     "ScalarsReport": (SIGNALS, "`filter_scalars`"),
     "ColorsReport": ("apply_color_spectral_filter_per_vertex", "`filter_colors`"),
-    "SpectrumReport": ("get_geometry_spectrum", "`meshlab-spectral spectrum`"),
     "TextureReport": ("compute_scalar_surface_texture_per_vertex", "`SurfaceTexture`"),
+}
+# Reports -> the class of the entries that just these have.
+BASES = {
+    ("FilterReport", "DenoiseReport"): "_ShapeReport",
+    ("FilterReport", "ColorsReport"): "_SolvedReport",
+    ("FilterReport", "DenoiseReport", "ColorsReport"): "_SurfaceReport",
 }
 # Entries that Python adds, in place of all others but the warnings.
 COLUMNS = {"ScalarsReport": ("columns", "of values n x k, their k reports, in place of these")}
@@ -125,13 +130,7 @@ def _table_of(table: str) -> str:
     lines = [
         f"@table_of({name!r}, {short!r}{flags})",
         f"class {table}(Options):",
-        f'    """Options of {_filter_named(name)["name"]}, named as in MeshLab.',
-        "",
-        "    Raises",
-        "    ------",
-        "    OptionError",
-        "        When a value is invalid; names the option, the value and what is allowed.",
-        '    """',
+        f'    """Options of {_filter_named(name)["name"]}, named as in MeshLab; see `Options`."""',
         "",
         # A length may be given as a text or a number, and is a `Length` then.
         "    if TYPE_CHECKING:",
@@ -220,9 +219,9 @@ def _kinds_of(name: str) -> dict[str, str]:
     return kinds
 
 
-def _report_of(table: str) -> str:
-    """Return the class of a report; entries that not every run has are in a class of their own."""
-    name, function = REPORTS[table]
+def _entries_of(table: str) -> list[tuple[str, str, str, bool]]:
+    """Return name, type and meaning of a report's entries, and whether every run has them."""
+    name, _ = REPORTS[table]
     kinds = _kinds_of(name)
     entries = sorted(_filter_named(name)["report"])
     if table in COLUMNS:
@@ -233,22 +232,42 @@ def _report_of(table: str) -> str:
         entries.append((added, meaning, False))
     if "summary" in kinds:
         entries.append(("summary", "what was found and done, in one line", True))
-    entries.append(("warnings", "problems that were not errors, and what to do about them", True))
-    entries.append(("warning_codes", "for each of them, what it is about", True))
-    kinds["warnings"] = kinds["warning_codes"] = "list[str]"
+    return [(entry, kinds[entry], meaning, is_always) for entry, meaning, is_always in entries]
 
-    def lines(wanted: bool) -> list[str]:
-        return [
-            f"    {entry}: {kinds[entry]}\n    {_docstring(meaning)}"
-            for entry, meaning, is_always in entries
-            if is_always == wanted
-        ]
 
-    text = f'    """Report of {function}; lengths are in the units of the mesh."""\n'
-    if not (some := lines(False)):
-        return "\n".join([f"class {table}(TypedDict):", text, *lines(True)])
-    always = [f"class _{table}(TypedDict):", *lines(True)]
-    return "\n".join([*always, "\n", f"class {table}(_{table}, total=False):", text, *some])
+def _class_of(name: str, bases: str, entries: list[Any], of: str = "") -> str:
+    lines = [f"class {name}({bases}):"]
+    if of:
+        lines.append(f'    """Report of {of}; lengths are in the units of the mesh."""\n')
+    for entry, kind, meaning, _ in entries:
+        lines.append(f"    {entry}: {kind}\n    {_docstring(meaning)}")
+    return "\n".join(lines)
+
+
+def _reports() -> str:
+    warnings = [
+        ("warnings", "list[str]", "problems that were not errors, and what to do about them", True),
+        ("warning_codes", "list[str]", "for each of them, what it is about", True),
+    ]
+    classes = [_class_of("_WarningReport", "TypedDict", warnings)]
+    entries = {table: _entries_of(table) for table in REPORTS}
+    always = {table: {one for one in entries[table] if one[-1]} for table in REPORTS}
+    shared: dict[str, set[Any]] = {"_WarningReport": set()}
+    for tables, name in BASES.items():
+        others = (always[table] for table in REPORTS if table not in tables)
+        shared[name] = set.intersection(*(always[table] for table in tables)).difference(*others)
+        classes.append(_class_of(name, "_WarningReport", sorted(shared[name])))
+    for table, (_, function) in REPORTS.items():
+        bases = [name for tables, name in BASES.items() if table in tables] or ["_WarningReport"]
+        own = [one for one in entries[table] if not any(one in shared[name] for name in bases)]
+        always_own, some = ([one for one in own if one[-1] == is_] for is_ in (True, False))
+        of = ", ".join(bases)
+        if some and always_own:
+            classes.append(_class_of(f"_{table}", of, always_own))
+            of = f"_{table}"
+        total = ", total=False" if some else ""
+        classes.append(_class_of(table, of + total, some or always_own, function))
+    return "\n\n\n".join(classes)
 
 
 def _docstring(meaning: str) -> str:
@@ -266,7 +285,7 @@ def _formatted(text: str) -> str:
 
 
 def _main() -> None:
-    reports = REPORTS_HEAD + "\n\n\n".join(map(_report_of, REPORTS))
+    reports = REPORTS_HEAD + _reports()
     for name, text in (("options.py", _written()), ("reports.py", reports)):
         target, formatted = FOLDER / name, _formatted(text)
         if "--check" not in sys.argv:

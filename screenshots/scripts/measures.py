@@ -11,8 +11,8 @@ import numpy as np
 from demo import bunny_file
 from figure_numbers import Drawing, MeshFile, Numbers, diagonal
 from meshlab_spectral.figures.harmonics import draw_basis_file, spread_modes
+from meshlab_spectral.figures.signed_mesh import texture_sheet
 from meshlab_spectral.figures.spectrum import draw_spectrum
-from meshlab_spectral.figures.texture import draw_texture
 from meshlab_spectral.files.meshes import load_arrays
 from meshlab_spectral.filters.harmonics import manifold_harmonics
 from meshlab_spectral.filters.option_types import Length
@@ -81,7 +81,7 @@ def roughness(mesh: MeshFile) -> Drawing:
     }
     numbers["left out, %"] = 100 * texture.vertices_left_out / len(V)
 
-    return Drawing(numbers, lambda path: draw_texture(V, F, texture, path, source.name))
+    return Drawing(numbers, texture_sheet(V, F, texture, source.name).save)
 
 
 def harmonics(name: str, mesh: MeshFile) -> Drawing:

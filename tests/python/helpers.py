@@ -10,6 +10,7 @@ import pymeshlab
 import pytest
 from meshlab_spectral._core import filters
 from meshlab_spectral.files.filtering import filter_to_scratch
+from meshlab_spectral.files.request import Request
 from meshlab_spectral.files.whole_files import writing_whole
 from meshlab_spectral.filters.option_types import Options
 from numpy.typing import NDArray
@@ -76,7 +77,7 @@ def filter_file(
 ) -> dict[str, Any]:
     """Filter a mesh file into another, and return the report."""
     with writing_whole(target) as scratch:
-        return filter_to_scratch(source, scratch, options, lambda *stage: None, mesh=mesh)
+        return filter_to_scratch(Request(source, options, mesh), scratch, lambda *stage: None)
 
 
 def refusal(mesh_set: pymeshlab.MeshSet, filter_name: str = FILTER, **parameters: Any) -> str:

@@ -65,9 +65,8 @@ Signal signalOf(MeshLaplacian mesh, Boundary boundary) {
     const Interior interior(mesh.surface.F, mesh.components, boundary);
     if (interior.isWhole()) {
         Eigen::MatrixXd U = std::move(mesh.surface.X);
-        mesh.laplacian.constants.remove(mesh.laplacian.D, U);
-        mesh.laplacian.constants.remove(mesh.laplacian.D,
-                                        U);  // again, for round-off if components are far apart
+        // The second time takes round-off of the first, where components are far apart.
+        for (int time = 0; time < 2; ++time) mesh.laplacian.constants.remove(mesh.laplacian.D, U);
         return {std::move(mesh.laplacian), std::move(U)};
     }
     if (interior.size() == 0)

@@ -29,7 +29,7 @@ Fields<DenoiseCall> denoiseFields() {
     using Call = DenoiseCall;
     return {
         field<Call>([](auto& call) -> auto& { return call.options.strength; }, "strength",
-                    "Strength",
+                    "Denoising strength",
                     "1 removes the noise as measured. More also removes fine details; less leaves "
                     "some noise; 0 changes nothing.")
             .in("factor"),

@@ -68,7 +68,7 @@ void addTransferFields(Fields<Call>& fields) {
         "At the default size a low-pass removes the noise of a scan, and thinner parts, such as "
         "fingers and wires, keep their thickness; at any other size they shrink."));
     fields.push_back(field<Call>([](auto& call) -> auto& { return call.transfer.power; }, "power",
-                                 "Strength (up to 1)",
+                                 "Fraction of the filter",
                                  "Fraction of the filter to apply, as a power of its gains: 0.5 is "
                                  "half strength (a gain of 4 becomes 2).")
                          .in("exponent")

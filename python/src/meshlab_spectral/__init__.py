@@ -6,10 +6,9 @@
 >>> ms.load_new_mesh("scan.ply")
 >>> ms.apply_coord_spectral_filter_fractional(feature_size=pymeshlab.PercentageValue(2))
 
-Each subpackage imports only from those to its left; all of them import `errors`
-and `extras`:
+Each subpackage imports only from those to its left; all of them import `errors` and `extras`:
 
-    plugin <- filters <- files <- process <- figures, batch <- cli
+    formats, plugin <- filters <- files <- workers <- tiles <- batch, figures <- cli
 """
 
 import re

@@ -17,10 +17,10 @@ from meshlab_spectral.errors import OptionError as OptionError
 from meshlab_spectral.errors import PluginError as PluginError
 from meshlab_spectral.errors import SolverError as SolverError
 from meshlab_spectral.errors import SpectralError as SpectralError
-from meshlab_spectral.figures.comparison import plot_comparison as plot_comparison
 from meshlab_spectral.figures.harmonics import plot_harmonics as plot_harmonics
+from meshlab_spectral.figures.signed_mesh import plot_comparison as plot_comparison
+from meshlab_spectral.figures.signed_mesh import plot_texture as plot_texture
 from meshlab_spectral.figures.spectrum import plot_spectrum as plot_spectrum
-from meshlab_spectral.figures.texture import plot_texture as plot_texture
 from meshlab_spectral.files.comparison import Comparison as Comparison
 from meshlab_spectral.files.comparison import Deviation as Deviation
 from meshlab_spectral.files.comparison import compare as compare

@@ -12,6 +12,7 @@ from __future__ import annotations
 
 import json
 import os
+import pickle
 import queue
 import signal
 import sys
@@ -21,22 +22,17 @@ from pathlib import Path
 from typing import Any
 
 from meshlab_spectral import _core, errors
-from meshlab_spectral.files.basis import basis_to_scratch
 from meshlab_spectral.files.comparison import compare
 from meshlab_spectral.files.filtering import (
     filter_to_scratch,
     joined_to_scratches,
     script_to_scratch,
 )
-from meshlab_spectral.files.info import mesh_info
 from meshlab_spectral.files.intent import intent_of
-from meshlab_spectral.files.meshes import StageCallback, load_arrays
-from meshlab_spectral.files.region import Region
-from meshlab_spectral.files.texture import texture_of
+from meshlab_spectral.files.measures import basis_to_scratch, mesh_info, spectrum_of, texture_of
+from meshlab_spectral.files.meshes import StageCallback
+from meshlab_spectral.files.request import Request
 from meshlab_spectral.files.whole_files import file_trouble, is_disk_full
-from meshlab_spectral.filters.options import BasisOptions, SpectrumOptions, TextureOptions
-from meshlab_spectral.filters.running import plain
-from meshlab_spectral.filters.spectrum import measure
 from meshlab_spectral.filters.tables import TABLES
 from meshlab_spectral.formats.budget import guard_process
 from meshlab_spectral.plugin.limits import name_memory_limit, set_memory_limit
@@ -52,40 +48,31 @@ def _report_of(job: dict[str, Any], on_stage: StageCallback) -> dict[str, Any]:
         sources, scratches = (list(map(Path, job[name])) for name in ("sources", "scratches"))
         table = TABLES[job["filter"]]
         return joined_to_scratches(sources, scratches, table.from_dict(job["options"]), on_stage)
-    source = Path(job["source"])
-    archive = Path(job["archive"]) if job.get("archive") else None
     if task == "compare":
         on_stage("reading", None)
-        comparison = compare(source, Path(job["other"]), max_distance=job.get("max_distance"))
-        if archive is not None:
-            comparison.save(archive)
-        return comparison.report
+        found = compare(job["source"], job["other"], max_distance=job["max_distance"])
+        return _sent(found if job["whole"] else found.without_arrays, job)
+    request = Request.of_job(job)
     if task == "texture":
-        texture_options = TextureOptions.from_dict(job["options"])
-        part = Region.from_given(job.get("region"))
-        return texture_of(source, texture_options, on_stage, job.get("mesh"), archive, part)
-    verbose = job.get("verbose", True)
+        return _sent(texture_of(request, on_stage), job)
     if task == "spectrum":
-        on_stage("reading", None)
-        V, F = load_arrays(source, job.get("mesh"))
-        on_stage("measuring", None)
-        spectrum_options = SpectrumOptions.from_dict(job["options"])
-        return plain(measure(V, F, spectrum_options, on_stage))
+        return spectrum_of(request, on_stage)
     if task == "info":
-        return mesh_info(source, on_stage, job.get("mesh"))
-    region = Region.from_given(job.get("region"))
+        return mesh_info(request.source, on_stage, request.mesh)
     if "target" in job:
-        wanted = TABLES[task].from_dict(job["options"])
-        return intent_of(source, Path(job["target"]), wanted, on_stage, job.get("mesh"), region)
-    scratch = Path(job["scratch"])
+        return intent_of(request, Path(job["target"]), on_stage)
+    scratch, verbose = Path(job["scratch"]), job.get("verbose", True)
     if task == "basis":
-        basis_options = BasisOptions.from_dict(job["options"])
-        return basis_to_scratch(source, scratch, basis_options, on_stage, job.get("mesh"))
+        return basis_to_scratch(request, scratch, on_stage)
     if task == "script":
-        return script_to_scratch(source, scratch, job["script"], on_stage, verbose)
-    options = TABLES[task].from_dict(job["options"])
-    mesh = job.get("mesh")
-    return filter_to_scratch(source, scratch, options, on_stage, verbose, mesh, region)
+        return script_to_scratch(request.source, scratch, job["script"], on_stage, verbose)
+    return filter_to_scratch(request, scratch, on_stage, verbose)
+
+
+def _sent(result: object, job: dict[str, Any]) -> dict[str, Any]:
+    """Hand over a result with arrays in the file of a job, in place of a report."""
+    Path(job["result"]).write_bytes(pickle.dumps(result))
+    return {}
 
 
 def _read(jobs: queue.SimpleQueue[str]) -> None:

@@ -13,6 +13,8 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from meshlab_spectral.formats.normals import vertex_normals
+
 Mesh = tuple[NDArray[np.float64], NDArray[np.int64]]
 
 
@@ -39,11 +41,7 @@ def part(noise: float = 0.0, *, seed: int = 0) -> Mesh:
     Parameters are those of `scan`.
     """
     cells = 30
-    k = np.arange(cells + 1)
-    i, j = (one.ravel() for one in np.meshgrid(k, k, indexing="ij"))
-    a = (np.arange(cells)[:, None] * (cells + 1) + np.arange(cells)).ravel()
-    b, c, d = a + cells + 1, a + cells + 2, a + 1
-    square = np.vstack([np.column_stack([a, b, c]), np.column_stack([a, c, d])])
+    i, j, square = _squares(cells)
     points: list[NDArray[np.int64]] = []
     faces: list[NDArray[np.int64]] = []
     for axis in range(3):
@@ -66,13 +64,8 @@ def terrain(noise: float = 0.2, *, seed: int = 0) -> Mesh:
 
     Parameters are those of `scan`.
     """
-    n = 100
-    k = np.arange(n)
-    x, y = (one.ravel().astype(float) for one in np.meshgrid(k, k, indexing="ij"))
+    x, y, F = _squares(99)
     z = 8 * np.sin(x / 17) * np.cos(y / 13) + 3 * np.sin(x / 7 + 1) * np.sin(y / 9)
-    a = (k[:-1, None] * n + k[:-1]).ravel()
-    b, c, d = a + n, a + n + 1, a + 1
-    F = np.vstack([np.column_stack([a, b, c]), np.column_stack([a, c, d])])
     return _noisy(np.column_stack([x, y, z]), F, noise, seed), F
 
 
@@ -116,11 +109,16 @@ def _noisy(
     V: NDArray[np.float64], F: NDArray[np.int64], noise: float, seed: int
 ) -> NDArray[np.float64]:
     """Move vertices along their normals, by a number of mean edges at random."""
-    a, b, c = (V[F[:, corner]] for corner in range(3))
-    N = np.zeros_like(V)
-    np.add.at(N, F, np.cross(b - a, c - a)[:, None, :])
-    N /= np.linalg.norm(N, axis=1, keepdims=True)
-    edge = float(np.linalg.norm(b - a, axis=1).mean())
+    edge = float(np.linalg.norm(V[F[:, 1]] - V[F[:, 0]], axis=1).mean())
     height = noise * edge * np.random.default_rng(seed).standard_normal(len(V))
-    moved: NDArray[np.float64] = V + height[:, None] * N
+    moved: NDArray[np.float64] = V + height[:, None] * vertex_normals(V, F)
     return moved
+
+
+def _squares(cells: int) -> tuple[NDArray[np.int64], NDArray[np.int64], NDArray[np.int64]]:
+    """Return the rows and columns of the points of a grid, and two triangles for each cell."""
+    k = np.arange(cells + 1)
+    i, j = (one.ravel() for one in np.meshgrid(k, k, indexing="ij"))
+    a = (k[:-1, None] * (cells + 1) + k[:-1]).ravel()
+    b, c, d = a + cells + 1, a + cells + 2, a + 1
+    return i, j, np.vstack([np.column_stack([a, b, c]), np.column_stack([a, c, d])])

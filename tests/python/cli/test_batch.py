@@ -114,6 +114,11 @@ def test_no_existing_file_is_replaced_unasked(tmp_path: Path) -> None:
     batch = ["batch", source, "--output", out, "--steps", 1, "--workers", 1]
     assert_fails(command(*batch), 2, str(out / paths[1].name), "--overwrite")
     assert contents(out) == {paths[1].name: PRECIOUS}
+    paths[1].rename(paths[1].with_suffix(".moved"))  # the input's fault is told first
+    paths[1].mkdir()
+    assert_fails(command(*batch), 1, f"{paths[1]} is a folder")
+    paths[1].rmdir()
+    paths[1].with_suffix(".moved").rename(paths[1])
     assert_fails(command(*batch, "--resume"), 2, "already exist", "report of the run", REPORT)
     done = command(*batch, "--overwrite")
     assert done.returncode == 0, done.stderr

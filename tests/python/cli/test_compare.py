@@ -39,6 +39,9 @@ def test_the_numbers_are_those_of_the_function(pair: tuple[Path, Path]) -> None:
     assert shown.returncode == 0, shown.stderr
     assert "Along the normal" in shown.stdout
     assert "Volume" in shown.stdout
+    equal = command("compare", pair[0], pair[0]).stdout
+    assert "the surfaces are equal" in equal
+    assert "vertex" not in equal
 
 
 def test_the_coloured_mesh_is_b_with_the_deviation(pair: tuple[Path, Path], tmp_path: Path) -> None:

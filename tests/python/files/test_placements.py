@@ -12,7 +12,7 @@ import pytest
 import trimesh
 from helpers import filter_file
 from meshlab_spectral import DenoiseOptions, FilterOptions, compare
-from meshlab_spectral.files.info import mesh_info
+from meshlab_spectral.files.measures import mesh_info
 from meshlab_spectral.files.meshes import load_arrays
 from meshlab_spectral.filters.option_types import Options
 from numpy.typing import NDArray

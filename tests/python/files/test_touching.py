@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 from helpers import filter_file
 from meshlab_spectral import DenoiseOptions, FilterOptions, filter_mesh
-from meshlab_spectral.files.info import mesh_info
+from meshlab_spectral.files.measures import mesh_info
 from meshlab_spectral.filters.option_types import Options
 from meshlab_spectral.formats.opening import open_document
 from numpy.typing import NDArray

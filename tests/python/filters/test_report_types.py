@@ -17,9 +17,6 @@ from meshlab_spectral import (
     surface_texture,
 )
 from meshlab_spectral.filters import reports
-from meshlab_spectral.filters.options import SpectrumOptions
-from meshlab_spectral.filters.running import plain
-from meshlab_spectral.filters.spectrum import measure
 
 _SPHERE = pyvista.Icosphere(nsub=3)
 V, F = np.array(_SPHERE.points, dtype=float), np.array(_SPHERE.regular_faces)
@@ -39,7 +36,6 @@ RUNS: dict[str, list[Callable[[], Any]]] = {
         lambda: filter_scalars(V, F, V)[1],
     ],
     "ColorsReport": [lambda: filter_colors(V, F, np.abs(V))[1]],
-    "SpectrumReport": [lambda: plain(measure(V, F, SpectrumOptions()))],
     "TextureReport": [
         lambda: surface_texture(V, F, waviness=0.5).report,
         lambda: surface_texture(V, F, waviness=0.5, form="sphere").report,

@@ -73,11 +73,15 @@ def test_vertices_and_faces_may_stand_in_any_lines(
     extra = {"N": [0, 0, 1], "C": [255, 0, 9, 255], "ST": [0.5, 0.25]}
     row = [word for letter in ("N", "C", "ST") if letter in letters for word in extra[letter]]
     words = [str(word) for point in V for word in [*point, *row]]
-    words += ["3", "0", "1", "2", "3", "0", "2", "3"]
+    colour = data.draw(st.sampled_from(["", " 255 0 9", " 0.5 0.5 0.5 1"]))
     gaps = st.sampled_from([" ", "  ", "\n", "\r\n", " # why not\n", "\n\n\t"])
     head = data.draw(st.sampled_from([f"{letters}OFF", f"# a square\n{letters}OFF"]))
     counts = data.draw(st.sampled_from(["4 2 0\n", " 4 2 5\n", "\n4 2 5 # counts\n"]))
     text = head + counts + "".join(word + data.draw(gaps) for word in words)
+    if colour:  # which ends its line
+        text = f"{text.rstrip()}\n3 0 1 2{colour}\n3 0 2 3{colour}\n"
+    else:
+        text += "".join(word + data.draw(gaps) for word in "30123023")
     path = write(tmp_path_factory.mktemp("off"), text.encode())
     (part,) = read(path).parts
     np.testing.assert_array_equal(part.vertices, V)

@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 from meshlab_spectral import FilterOptions
 from meshlab_spectral.files.filtering import filter_to_scratch
+from meshlab_spectral.files.request import Request
 from meshlab_spectral.formats import ply, stl
 from meshlab_spectral.tiles.run import filter_in_tiles
 from tiled_meshes import bumpy_torus, shuffled, write_ply, write_stl
@@ -30,7 +31,7 @@ def both(tmp_path: Path) -> Both:
     def run(source: Path, tiles: int, **options: Any) -> tuple[Path, Path, dict[str, Any]]:
         whole, tiled = (tmp_path / f"{name}{source.suffix}" for name in ("whole", "tiled"))
         given = FilterOptions(**options)
-        filter_to_scratch(source, whole, given, _ignore, verbose=False)
+        filter_to_scratch(Request(source, given), whole, _ignore, verbose=False)
         report = filter_in_tiles(source, tiled, given, _ignore, tiles, _ignore)
         assert sorted(tmp_path.iterdir()) == sorted([source, whole, tiled])
         return whole, tiled, report

@@ -21,6 +21,7 @@ import pytest
 from commands import command
 from meshlab_spectral import FilterOptions, MemoryLimitError, MeshFileError
 from meshlab_spectral.errors import FilterError, OptionError, ProcessDiedError, UntiledError
+from meshlab_spectral.files.request import Request
 from meshlab_spectral.tiles import whole_or_tiles
 from meshlab_spectral.tiles.halo import kernel_tails, reach_of
 from meshlab_spectral.tiles.plan import Workspace
@@ -113,8 +114,11 @@ def test_tiles_take_over_where_memory_is_refused(
 
     monkeypatch.setattr(whole_or_tiles, "write_in_child", refuse)
     target, lines = tmp_path / "out.ply", list[str]()
-    run = partial(whole_or_tiles.filter_file, source, target, on_progress=_ignore, mesh=None)
-    run = partial(run, overwrite=True)
+
+    def run(options: FilterOptions, **others: Any) -> dict[str, Any]:
+        request = Request(source, options)
+        return whole_or_tiles.filter_file(request, target, _ignore, overwrite=True, **others)
+
     report = run(SMALL, tiles=0, tell=lines.append)
     assert report["tiles"] >= 2
     assert lines == [

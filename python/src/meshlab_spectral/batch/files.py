@@ -54,9 +54,9 @@ def filter_files(
 
     Raises
     ------
-    InputError, FormatError, OptionError
-        Before anything is done: when inputs are missing, outputs already exist or would share a
-        name, or an option is invalid.
+    InputError, MeshFileError, FormatError, OptionError
+        Before anything is done: when inputs are missing, outputs already exist (and their inputs
+        can be read) or would share a name, or an option is invalid.
     BatchError
         When the report cannot be written, no worker starts, or the Dask cluster cannot be reached.
     MissingPackageError

@@ -120,7 +120,7 @@ def _from_url(url: str, recursive: bool) -> Iterator[Input]:
         elif fs.isdir(path):
             for file in sorted(fs.find(path, maxdepth=None if recursive else 1)):
                 relative = posixpath.relpath(file, path)
-                if _hidden(relative):
+                if any(part.startswith(".") for part in relative.split("/")):
                     continue
                 is_surface = _begins_as_surface(fs, file)
                 if is_surface or _looks_like_mesh(file):
@@ -140,10 +140,6 @@ def _begins_as_surface(fs: Any, path: str) -> bool:
         return False
     with fs.open(path, "rb") as file:
         return file.read(len(TRIANGLES)) in (TRIANGLES, QUADRILATERALS)
-
-
-def _hidden(relative: str) -> bool:
-    return any(part.startswith(".") for part in relative.split("/"))
 
 
 def _looks_like_mesh(name: str) -> bool:

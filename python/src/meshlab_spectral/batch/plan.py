@@ -11,12 +11,13 @@ from typing import Any
 from meshlab_spectral.batch import storage
 from meshlab_spectral.batch.inputs import Input, find_inputs
 from meshlab_spectral.batch.jobs import FileResult, Job
-from meshlab_spectral.batch.outputs import plan_outputs
+from meshlab_spectral.batch.outputs import Output, plan_outputs
 from meshlab_spectral.batch.report import DEFAULT_NAME, check_report, read_report
 from meshlab_spectral.batch.resume import Records, done_records, proved_done
 from meshlab_spectral.batch.settings import Settings
 from meshlab_spectral.errors import InputError, OptionError
 from meshlab_spectral.files.script import script_filters
+from meshlab_spectral.files.sources import check_source
 from meshlab_spectral.filters.option_types import Options
 from meshlab_spectral.filters.options import FilterOptions
 from meshlab_spectral.plugin.versions import versions
@@ -102,11 +103,11 @@ def plan_batch(
             f"the report {report_path} is also an output: choose another with --report"
         )
     if not overwrite:
-        targets = [output.target for output in planned if output.name not in proved]
+        outputs = [output for output in planned if output.name not in proved]
         hint = "continue an earlier run with --resume"
         if resume:
             hint = f"pass the report of the run that made them (--report); {report_path} is not it"
-        _refuse_to_replace(targets, begun if resume else None, hint)
+        _refuse_to_replace(outputs, begun if resume else None, hint)
     return Batch(left, list(done.values()), report_path, settings)
 
 
@@ -162,14 +163,20 @@ def _inputs(
     return find_inputs([str(location) for location in inputs], recursive, leave_out)
 
 
-def _refuse_to_replace(targets: Sequence[str], begun: float | None, hint: str) -> None:
-    """Refuse to replace existing files, except those made by the run to be resumed."""
+def _refuse_to_replace(outputs: Sequence[Output], begun: float | None, hint: str) -> None:
+    """Refuse to replace existing files, except those made by the run to be resumed.
+
+    An input that cannot be read is told first: its output would not be written, anyway.
+    """
     taken = [
         target
-        for target in storage.existing(list(targets))
+        for target in storage.existing([output.target for output in outputs])
         if begun is None or not _made_since(target, begun)
     ]
     if taken:
+        for output in outputs:
+            if output.target in taken and not storage.is_url(output.source):
+                check_source(Path(output.source))
         more = ", ..." if len(taken) > _NAMED_AT_MOST else ""
         raise InputError(
             f"{len(taken)} of the outputs already exist "

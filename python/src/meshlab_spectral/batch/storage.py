@@ -90,14 +90,14 @@ def digest_at(location: str) -> str | None:
 
 def existing(locations: list[str]) -> list[str]:
     """Return the locations that exist, as files or otherwise."""
-    return [location for location in locations if _exists(location)]
 
+    def exists(location: str) -> bool:
+        if not is_url(location):
+            return os.path.lexists(location)
+        fs, path = file_system(location)
+        return bool(fs.exists(path))
 
-def _exists(location: str) -> bool:
-    if not is_url(location):
-        return os.path.lexists(location)
-    fs, path = file_system(location)
-    return bool(fs.exists(path))
+    return [location for location in locations if exists(location)]
 
 
 @contextlib.contextmanager

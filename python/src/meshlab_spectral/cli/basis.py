@@ -13,6 +13,7 @@ from meshlab_spectral.cli.messages import errors_reported, print_result
 from meshlab_spectral.cli.progress import progress_shown
 from meshlab_spectral.figures.harmonics import check_modes, draw_basis_file
 from meshlab_spectral.files.extensions import check_ending
+from meshlab_spectral.files.request import Request
 from meshlab_spectral.filters.options import BasisOptions
 from meshlab_spectral.workers.single_file import write_in_child
 
@@ -58,7 +59,7 @@ def basis_command(
         refuse_existing(output, overwrite)
         check_picture(pictures, overwrite)
         with progress_shown() as on_progress:
-            write_in_child(source, output, options, on_progress, mesh)
+            write_in_child(Request(source, options, mesh), output, on_progress)
             if pictures is not None:
                 on_progress("drawing", None)
                 draw_basis_file(output, pictures, shown, scale)

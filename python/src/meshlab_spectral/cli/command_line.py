@@ -14,7 +14,7 @@ from typing import Annotated, Any
 import typer
 from typer.core import TyperCommand, TyperGroup
 
-from meshlab_spectral.cli.messages import EXIT_USAGE, VERBOSITY, print_error
+from meshlab_spectral.cli.messages import EXIT_USAGE, VERBOSITY, flag, print_error
 from meshlab_spectral.other_words import instead_of
 
 Command = Callable[..., None]
@@ -170,14 +170,9 @@ def with_parameters(
 ) -> Command:
     """Return a command that passes its arguments to `run`, as a dict.
 
-    Parameters
-    ----------
-    command
-        The command that `run` calls; its name, docstring and parameters are kept.
-    added
-        Name, type, `typer.Option` and default of each additional parameter.
-    replaced
-        Names of parameters of `command` that `run` supplies instead.
+    Name, docstring and parameters of the `command` that `run` calls are kept, but for the
+    parameters `replaced`, which `run` supplies instead. `added` are name, type, `typer.Option` and
+    default of each additional one.
     """
     own = inspect.signature(command, eval_str=True).parameters.values()
     kind = inspect.Parameter.KEYWORD_ONLY
@@ -212,15 +207,6 @@ def _print_usage_error(error: Any) -> None:
         typer.echo(f"See: {error.ctx.command_path} --help", err=True)
 
 
-def _as_options(text: str) -> str:
-    """Write the names of options as those of a command."""
-    return re.sub(r"\b(feature_size|overwrite|basis_size)\b", _option, text)
-
-
-def _option(name: re.Match[str]) -> str:
-    return "--" + name[0].replace("_", "-")
-
-
 def _name_used(names: list[str]) -> str:
     """Return the name of an option that the command line has; the longest of those it may have."""
     words = {word.partition("=")[0] for word in sys.argv[1:]}
@@ -240,7 +226,8 @@ def _described(error: Any) -> str:
         similar = " or ".join(error.possibilities or [])
         hint = f": did you mean {similar}?" if similar else ""
         if instead := instead_of(error.option_name.lstrip("-").replace("-", "_")):
-            hint = f": {_as_options(instead)}"
+            options = r"\b(feature_size|overwrite|basis_size)\b"
+            hint = ": " + re.sub(options, lambda name: flag(name[0]), instead)
         return f"there is no option {error.option_name}{hint}"
     if error.message.startswith("Got unexpected extra argument"):
         return f"{error.message[:1].lower()}{error.message[1:]}: for several files, use batch"

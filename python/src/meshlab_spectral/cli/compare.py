@@ -18,10 +18,7 @@ from meshlab_spectral.cli.filter_options import AsJson
 from meshlab_spectral.cli.messages import errors_reported, print_result, print_warning
 from meshlab_spectral.cli.progress import progress_shown
 from meshlab_spectral.cli.report_table import change, table_of
-from meshlab_spectral.figures.comparison import (
-    draw_comparison,
-    write_comparison,
-)
+from meshlab_spectral.figures.signed_mesh import comparison_sheet, write_signed
 from meshlab_spectral.files.comparison import PERCENTILES, Comparison
 from meshlab_spectral.workers.single_file import compare_in_child
 
@@ -69,9 +66,9 @@ def compare_command(
         with progress_shown() as on_progress:
             result = compare_in_child(a, b, on_progress, bool(output or picture), max_distance)
         if scratch is not None:
-            write_comparison(result, scratch)
+            write_signed(*result.b, result.signed, result.color_extent, scratch)
         if picture is not None:
-            draw_comparison(result, picture, (a.name, b.name))
+            comparison_sheet(result, (a.name, b.name)).save(picture)
     for warning in result.warnings:
         print_warning(warning)
     if as_json:
@@ -88,7 +85,9 @@ def compare_command(
 
 def _rows(result: Comparison) -> list[tuple[str, str]]:
     rows = []
-    for name, one in result.deviations.items():
+    if not any(one.largest for one in result.deviations.values()):
+        rows.append(("Deviation", "none: the surfaces are equal"))
+    for name, one in result.deviations.items() if not rows else ():
         label = _LABELS[name]
         shares = " / ".join(f"{one.percentiles[p]:.4g}" for p in PERCENTILES)
         position = ", ".join(f"{x:.4g}" for x in one.position)

@@ -40,6 +40,7 @@ from meshlab_spectral.errors import OptionError
 from meshlab_spectral.files.presets import preset_place
 from meshlab_spectral.files.recipe import saving_recipe
 from meshlab_spectral.files.region import Region
+from meshlab_spectral.files.request import Request
 from meshlab_spectral.filters.option_types import Options
 from meshlab_spectral.filters.options import DenoiseOptions, FilterOptions
 from meshlab_spectral.plugin.limits import name_memory_limit, set_memory_limit
@@ -214,39 +215,29 @@ def _command_with(table: type[Options], help_text: str) -> Command:
                     raise OptionError("a cluster configures its own workers: leave out --memory")
                 set_memory_limit(memory)
                 name_memory_limit("--memory")
+            request = Request(read, options, mesh, part)
             if dry_run:
                 with progress_shown() as on_progress:
-                    intent = intent_of_file(
-                        read, written, options, on_progress, mesh, tiles, part, scheduler
-                    )
+                    intent = intent_of_file(request, written, on_progress, tiles, scheduler)
                 print_intent(source, destination, options, intent, as_json)
                 return
             if save_preset is not None:
                 save_recipe = preset_place(save_preset)
             with saving_recipe(save_recipe, options), progress_shown() as on_progress:
                 report = filter_file(
-                    read,
-                    written,
-                    options,
-                    on_progress,
-                    mesh,
-                    overwrite,
-                    tiles,
-                    print_message,
-                    part,
-                    scheduler,
+                    request, written, on_progress, overwrite, tiles, print_message, scheduler
                 )
             if picture is not None or coloured is not None:
                 # A slow import.
-                from meshlab_spectral.figures.comparison import draw_comparison, write_comparison
+                from meshlab_spectral.figures.signed_mesh import comparison_sheet, write_signed
 
                 with progress_shown() as on_progress:
                     change = compare_in_child(read, written, on_progress, whole=True)
                 if coloured is not None:
-                    write_comparison(change, coloured)
+                    write_signed(*change.b, change.signed, change.color_extent, coloured)
                     report["color_extent"] = change.color_extent
                 if picture is not None:
-                    draw_comparison(change, picture, (source.name, destination.name))
+                    comparison_sheet(change, (source.name, destination.name)).save(picture)
         if save_recipe is not None and part is not None:
             names = ", ".join(f"--{name}" for name in part.given())
             print_warning(f"{save_recipe} does not hold {names}: a region is of one file")

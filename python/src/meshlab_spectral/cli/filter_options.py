@@ -13,7 +13,7 @@ import typer
 
 from meshlab_spectral.batch.settings import Settings
 from meshlab_spectral.cli.command_line import DENOISE, GROUP_OF, SOLVER, Command, with_parameters
-from meshlab_spectral.cli.messages import in_shell
+from meshlab_spectral.cli.messages import flag, in_shell
 from meshlab_spectral.errors import OptionError
 from meshlab_spectral.files.presets import (
     PRESETS,
@@ -118,15 +118,9 @@ def with_options(
     """Add the fields of tables to a command as options, passed on as `explicit` and as objects.
 
     `explicit` is a dict for `chosen_options`, with only the options set on the command line or by a
-    preset; `settings` is a `Settings` and `region` a `Region`, if these are among the tables.
-
-    Parameters
-    ----------
-    *tables
-        The tables; of fields with the same name the first is used. FilterOptions brings `--preset`
-        and `--equalizer`, too, DenoiseOptions the first.
-    leave_out
-        Fields that the command has no use for.
+    preset; `settings` is a `Settings` and `region` a `Region`, if these are among the tables. Of
+    fields with the same name the first is used; those to `leave_out` the command has no use for.
+    FilterOptions brings `--preset` and `--equalizer`, too, DenoiseOptions the first.
     """
     added: dict[str, tuple[str, Any, Any, Any]] = {}
     of_objects: dict[str, type[Any]] = {}
@@ -173,7 +167,7 @@ def with_options(
 def _parameter(one: Any, type_: Any, panel: str | None) -> tuple[str, Any, Any, Any]:
     """Convert a field for `with_parameters`; options of filters are checked by the core."""
     shown: dict[str, Any] = {"metavar": one.metadata["metavar"], "rich_help_panel": panel}
-    shown["help"] = re.sub(r"\|(\w+)\|", _flag, one.metadata["help"])
+    shown["help"] = re.sub(r"\|(\w+)\|", lambda other: flag(other[1]), one.metadata["help"])
     if panel is None and "range" in one.metadata:
         shown["min"] = 1
     if type_ is Length:
@@ -184,10 +178,6 @@ def _parameter(one: Any, type_: Any, panel: str | None) -> tuple[str, Any, Any, 
         shown["autocompletion"] = _completed(get_args(type_))
     default = str(one.default) if isinstance(one.default, Length) else one.default
     return one.name, type_, typer.Option(*one.metadata["flags"], **shown), default
-
-
-def _flag(other: re.Match[str]) -> str:
-    return "--" + other[1].replace("_", "-")
 
 
 def _completed(choices: Collection[str]) -> Callable[[str], list[str]]:
@@ -222,8 +212,7 @@ def chosen_options(
     for name in explicit:
         if name not in known:
             hint = ": add --denoise" if table is FilterOptions and recipe is None else ""
-            spelled = name.replace("_", "-")
-            raise OptionError(f"--{spelled} is not an option of {table.TABLE}{hint}")
+            raise OptionError(f"{flag(name)} is not an option of {table.TABLE}{hint}")
     values = {name: value for name, value in explicit.items() if name not in shortcuts}
     return table.from_dict({**options, **values})
 

@@ -11,7 +11,8 @@ from rich.console import Console
 from meshlab_spectral.cli.filter_options import AsJson, OneMesh, Source
 from meshlab_spectral.cli.messages import errors_reported, print_warning
 from meshlab_spectral.cli.progress import progress_shown
-from meshlab_spectral.cli.report_table import table_of
+from meshlab_spectral.cli.report_table import length_text, table_of
+from meshlab_spectral.files.request import Request
 from meshlab_spectral.plugin.versions import versions
 from meshlab_spectral.workers.single_file import measure_in_child
 
@@ -26,7 +27,7 @@ def info_command(source: Source, mesh: OneMesh = None, as_json: AsJson = False) 
       meshlab-spectral info scan.ply --json
     """
     with errors_reported("nothing was printed"), progress_shown() as on_progress:
-        report = measure_in_child(source, None, on_progress, mesh)
+        report = measure_in_child(Request(source, mesh=mesh), on_progress)
     for warning in report["warnings"]:
         print_warning(warning)
     if as_json:
@@ -37,12 +38,10 @@ def info_command(source: Source, mesh: OneMesh = None, as_json: AsJson = False) 
 
 
 def _rows(report: dict[str, Any]) -> list[tuple[str, str]]:
-    percent = 100 / report["diagonal"]
+    edge, diagonal = report["mean_edge"], report["diagonal"]
 
     def length(name: str) -> str:
-        """Format a length, also in mean edges and in percent of the diagonal."""
-        x = report[name]
-        return f"{x:.4g} ({x / report['mean_edge']:.3g}e, {x * percent:.3g} %)" if x else "none"
+        return length_text(report[name], edge, diagonal) if report[name] else "none"
 
     selected = [report.get(f"selected_{what}", 0) for what in ("faces", "vertices")]
     # What was found nevertheless is none that was searched for: voxel steps.
@@ -58,8 +57,8 @@ def _rows(report: dict[str, Any]) -> list[tuple[str, str]]:
         ("Vertices without faces", f"{report['unreferenced_vertices'] or ''}"),
         ("Selected", "{} faces, {} vertices".format(*selected) if any(selected) else ""),
         ("Extent", " x ".join(f"{x:.4g}" for x in report["extent"])),
-        ("Diagonal", f"{report['diagonal']:.4g}"),
-        ("Mean edge", f"{report['mean_edge']:.4g} ({report['mean_edge'] * percent:.2g} %)"),
+        ("Diagonal", f"{diagonal:.4g}"),
+        ("Mean edge", f"{edge:.4g} ({100 * edge / diagonal:.2g} %)"),
         ("Noise height", length("noise_height") if searched else "not searched for, see below"),
         ("Noise size", length("noise_size") if report["noise_size"] else ""),
         ("Spikes", f"{report['spikes'] or ''}"),

@@ -10,7 +10,7 @@ import typer
 from rich.console import Console
 
 from meshlab_spectral.cli.messages import one_line, print_warning
-from meshlab_spectral.cli.report_table import table_of
+from meshlab_spectral.cli.report_table import length_text, table_of
 from meshlab_spectral.filters.option_types import Options
 from meshlab_spectral.filters.options import FilterOptions
 from meshlab_spectral.plugin.versions import versions
@@ -55,7 +55,7 @@ def _rows(surface: dict[str, Any]) -> list[tuple[str, str]]:
     rows += [("Diagonal", f"{diagonal:.4g}"), ("Mean edge", f"{edge:.4g}")]
     for name, size in surface["sizes"].items():
         if size is not None:
-            shown = f"{size:.4g} ({size / edge:.3g}e, {100 * size / diagonal:.3g} %)"
+            shown = length_text(size, edge, diagonal)
         elif name.startswith("noise_"):
             shown = "as measured in the run"
         else:

@@ -74,11 +74,13 @@ def in_shell(error: SpectralError) -> str:
         return str(error)
     options, colon, text = str(error).partition(": ")
     # In small letters: a variable of the environment keeps its name.
-    return (
-        re.sub(r"(?<![^ ])([a-z]\w*) = ", lambda name: f"--{name[1].replace('_', '-')} ", options)
-        + colon
-        + text
-    )
+    flags = re.sub(r"(?<![^ ])([a-z]\w*) = ", lambda name: flag(name[1]) + " ", options)
+    return flags + colon + text
+
+
+def flag(name: str) -> str:
+    """Return an option as a shell has it."""
+    return "--" + name.replace("_", "-")
 
 
 def print_result(result: Table | object) -> None:

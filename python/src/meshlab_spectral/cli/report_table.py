@@ -103,6 +103,11 @@ def _work(report: dict[str, Any]) -> list[tuple[str, str]]:
     return [*rows, ("Work", ", ".join(work))]
 
 
+def length_text(x: float, mean_edge: float, diagonal: float) -> str:
+    """Format a length, also in mean edges and in percent of the diagonal."""
+    return f"{x:.4g} ({x / mean_edge:.3g}e, {100 * x / diagonal:.3g} %)"
+
+
 def change(before: float, after: float) -> str:
     """Format two numbers and their relative difference."""
     text = f"{before:.6g} -> {after:.6g}"

@@ -33,6 +33,7 @@ from meshlab_spectral.figures.spectrum import (
     octave_gains,
 )
 from meshlab_spectral.files.extensions import check_ending
+from meshlab_spectral.files.request import Request
 from meshlab_spectral.files.sources import check_source
 from meshlab_spectral.files.whole_files import writing_whole
 from meshlab_spectral.filters.options import (
@@ -102,7 +103,7 @@ def spectrum_command(
             refuse_existing(output, overwrite)
             scratch = stack.enter_context(writing_whole(output))
         with progress_shown() as on_progress:
-            report = measure_in_child(source, measured, on_progress, mesh)
+            report = measure_in_child(Request(source, measured, mesh), on_progress)
         spectrum = GeometrySpectrum.from_report(report)
         if scratch is not None:
             draw_spectrum(spectrum, options, source.name, scratch)

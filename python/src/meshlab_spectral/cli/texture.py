@@ -16,6 +16,7 @@ from meshlab_spectral.cli.colour_files import (
     Overwrite,
     Picture,
     coloured_mesh,
+    refuse_existing,
     writing_coloured,
 )
 from meshlab_spectral.cli.filter_options import (
@@ -28,9 +29,10 @@ from meshlab_spectral.cli.messages import errors_reported, print_error, print_re
 from meshlab_spectral.cli.progress import progress_shown
 from meshlab_spectral.cli.report_table import table_of
 from meshlab_spectral.errors import MeshError, OptionError, SpectralError
-from meshlab_spectral.figures.texture import draw_texture, write_texture
+from meshlab_spectral.figures.signed_mesh import full_height, texture_sheet, write_signed
 from meshlab_spectral.files.extensions import check_ending
 from meshlab_spectral.files.region import Region
+from meshlab_spectral.files.request import Request
 from meshlab_spectral.files.whole_files import writing_whole
 from meshlab_spectral.filters.options import TextureOptions
 from meshlab_spectral.filters.texture import SurfaceTexture
@@ -97,24 +99,15 @@ def texture_command(
             raise OptionError("--output and --picture are of one mesh: name only one")
         if table is not None:
             check_ending(table, "the table is a CSV file", ".csv")
-            if table.is_file() and not overwrite:
-                raise OptionError(
-                    f"{table} exists: choose another name, or replace it with --overwrite"
-                )
+            refuse_existing(table, overwrite)
         options = chosen_options(TextureOptions, explicit)
         measured: list[tuple[Path, SurfaceTexture]] = []
         failed = 0
         for source in sources:
             try:
                 with progress_shown() as on_progress:
-                    V, F, texture = texture_in_child(
-                        source,
-                        options,
-                        on_progress,
-                        mesh,
-                        whole=bool(output or picture),
-                        region=region,
-                    )
+                    request = Request(source, options, mesh, region)
+                    V, F, texture = texture_in_child(request, on_progress)
             except SpectralError as error:
                 if not many:
                     if isinstance(error, OptionError) and not explicit and region == Region():
@@ -124,10 +117,11 @@ def texture_command(
                 failed += 1
                 continue
             if scratch is not None:
-                write_texture(V, F, texture, scratch)
+                write_signed(V, F, texture.height, full_height(texture), scratch)
             if picture is not None:
-                draw_texture(V, F, texture, picture, source.name)
-            measured.append((source, replace(texture, unit=unit or texture.unit)))
+                texture_sheet(V, F, texture, source.name).save(picture)
+            numbers = replace(texture, height=texture.height[:0].copy(), unit=unit or texture.unit)
+            measured.append((source, numbers))
             for warning in texture.warnings:
                 print_warning(f"{source}: {warning}" if many else warning)
         records = [_record(source, texture, output, smr or ()) for source, texture in measured]

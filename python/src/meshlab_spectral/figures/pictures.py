@@ -21,45 +21,24 @@ SIGNED_COLOURS = "coolwarm"  # grey at zero, which stands out from the white pag
 
 @dataclass(frozen=True)
 class Panel:
-    """A mesh in a picture.
+    """A mesh in a picture."""
 
-    Attributes
-    ----------
-    label
-        Short text under the mesh.
-    V
-        n x 3 coordinates.
-    F
-        m x 3 vertex indices of triangles.
-    signed
-        n values to colour the mesh by, from -1 (blue) to 1 (red); a line marks 0 (grey).
-    colors
-        n x 3 levels of red, green and blue, 0 to 255, in place of `signed`.
-    zero_line
-        Whether the line is drawn; where values are rough it would cover them.
-    """
-
-    label: str
-    V: NDArray[np.float64]
-    F: NDArray[np.int64]
+    label: str  # short text under the mesh
+    V: NDArray[np.float64]  # n x 3 coordinates
+    F: NDArray[np.int64]  # m x 3 vertex indices of triangles
+    # n values to colour the mesh by, from -1 (blue) to 1 (red); a line marks 0 (grey).
     signed: NDArray[np.float64] | None = None
+    # n x 3 levels of red, green and blue, 0 to 255, in place of `signed`.
     colors: NDArray[np.uint8] | None = None
-    zero_line: bool = True
+    zero_line: bool = True  # whether the line is drawn; where values are rough it would cover them
 
 
 @dataclass(frozen=True)
 class View:
-    """A viewpoint.
+    """A viewpoint."""
 
-    Attributes
-    ----------
-    direction
-        Direction from the mesh to the camera.
-    up
-        Up direction of the picture; not parallel to `direction`.
-    """
-
-    direction: tuple[float, float, float] = (0.0, 0.0, 1.0)
+    direction: tuple[float, float, float] = (0.0, 0.0, 1.0)  # direction from the mesh to the camera
+    # Up direction of the picture; not parallel to `direction`.
     up: tuple[float, float, float] = (0.0, 1.0, 0.0)
 
     @classmethod
@@ -82,20 +61,11 @@ class View:
 
 @dataclass(frozen=True)
 class Frame:
-    """The rectangle shown by a picture, in parallel projection.
+    """The rectangle shown by a picture, in parallel projection."""
 
-    Attributes
-    ----------
-    view
-        The viewpoint.
-    middle
-        Point at the centre of the picture.
-    width, height
-        Size in the units of the mesh.
-    """
-
-    view: View
-    middle: NDArray[np.float64]
+    view: View  # the viewpoint
+    middle: NDArray[np.float64]  # point at the centre of the picture
+    # Its size in the units of the mesh.
     width: float
     height: float
 
@@ -131,25 +101,9 @@ def scene(
 ) -> Any:
     """Set up a plot of meshes in rows; raises MissingPackageError without PyVista.
 
-    Parameters
-    ----------
-    panels
-        The meshes, row by row.
-    frame
-        The rectangle shown in each panel.
-    columns
-        Number of panels in a row.
-    panel_size
-        Width and height of each panel in pixels.
-    font_size
-        Size of the labels.
-    off_screen
-        Whether to render without a window.
-
-    Returns
-    -------
-    pyvista.Plotter
-        To be closed by the caller.
+    Row by row, `panels` are shown in `columns`, each with the rectangle of the `frame`, in
+    `panel_size`, width and height in pixels; `font_size` is that of the labels. Returns a
+    pyvista.Plotter to be closed by the caller, without a window if it is `off_screen`.
     """
     plotter = _plotter((ceil(len(panels) / columns), columns), panel_size, off_screen)
     for cell, panel in enumerate(panels):
@@ -180,15 +134,10 @@ def render(panel: Panel, frame: Frame, pixels: int) -> Image:
 
 
 def to_full_colours(values: NDArray[np.float64], areas: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Scale values to -1 .. 1, clipping the extreme hundredth of the area, mostly spikes.
+    """Scale n values to -1 .. 1, clipping the extreme hundredth of the area, mostly spikes.
 
     Only the area where there are values counts: most harmonics of several components are zero, up
     to round-off, on all but one.
-
-    Parameters
-    ----------
-    values, areas
-        Values and areas of the n vertices.
     """
     height = np.abs(values)
     order = np.argsort(height)

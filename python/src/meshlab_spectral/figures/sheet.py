@@ -32,32 +32,11 @@ _MIN_CELL = 1.95
 
 
 class Sheet:
-    """A page of pictures, all of the same width.
+    """A page of pictures, all of the same width: `pixels`. A notebook shows its `figure`.
 
-    Parameters
-    ----------
-    aspects
-        For each row, width / height of its pictures.
-    columns
-        Number of columns.
-    label_lines
-        Number of lines in the label under each picture.
-    scale
-        Resolution; 1 fills a screen.
-    footer
-        Height of the strip at the bottom of the page, for `colour_bar`.
-
-    Attributes
-    ----------
-    pixels
-        Width of a picture in pixels.
-    figure
-        The page, which a notebook shows.
-
-    Raises
-    ------
-    MissingPackageError
-        When Matplotlib is not installed.
+    Of each row, `aspects` has width / height of its pictures, under each of which is a label of so
+    many lines. A `scale` of 1 fills a screen; a `footer` is a strip at the bottom of the page, for
+    `colour_bar`. Raises MissingPackageError when Matplotlib is not installed.
     """
 
     def __init__(

@@ -1,4 +1,5 @@
 """Reading and writing files: meshes, bases, recipes and filter scripts.
 
-`meshes` reads, filters and writes a mesh; `whole_files` writes outputs atomically.
+`meshes` reads meshes, `filtering` filters and `measures` measures them, as a `request` says;
+`whole_files` writes outputs atomically.
 """

@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-from collections import defaultdict
-from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
@@ -18,7 +16,7 @@ from meshlab_spectral.filters.arrays import lumped_areas, mesh_arrays
 from meshlab_spectral.filters.representations import brief, line, table
 from meshlab_spectral.formats.document import joined
 from meshlab_spectral.formats.normals import area_vectors, vertex_normals
-from meshlab_spectral.warned import Warned, warned, with_warnings
+from meshlab_spectral.warned import Warned, with_warnings
 
 Array = NDArray[np.float64]
 Arrays = tuple[Array, NDArray[Any]]
@@ -65,14 +63,10 @@ class Deviation:
     @property
     def numbers(self) -> dict[str, Any]:
         """All but the values at the vertices, for JSON."""
-        return {
-            "mean": self.mean,
-            "rms": self.rms,
-            "percentiles": {str(share): value for share, value in self.percentiles.items()},
-            "largest": self.largest,
-            "vertex": self.vertex,
-            "position": list(self.position),
-        }
+        percentiles = {str(share): value for share, value in self.percentiles.items()}
+        numbers = vars(self) | {"percentiles": percentiles, "position": list(self.position)}
+        del numbers["values"]
+        return numbers
 
     def __repr__(self) -> str:
         return line(self)
@@ -125,29 +119,12 @@ class Comparison:
         }
         return with_warnings(numbers, self.warnings)
 
-    def save(self, archive: Path) -> None:
-        """Write what `report` leaves out, as an archive of NumPy."""
-        values: dict[str, Any] = {name: one.values for name, one in self.deviations.items()}
-        np.savez(archive, V=self.a[0], F=self.a[1], W=self.b[0], G=self.b[1], **values)
-
-    @classmethod
-    def from_report(cls, report: Mapping[str, Any], archive: Path | None) -> Comparison:
-        """Return the comparison of a `report`; without meshes and values if there is no archive."""
-        arrays = defaultdict[str, Array](lambda: np.zeros((0, 3)))
-        if archive is not None:
-            with np.load(archive) as saved:
-                arrays.update({name: saved[name] for name in saved.files})
-        deviations = {
-            name: Deviation(
-                **{**one, "percentiles": {int(p): x for p, x in one["percentiles"].items()}},
-                values=arrays[name],
-            )
-            for name, one in report["deviations"].items()
-        }
-        meshes = (arrays["V"], arrays["F"]), (arrays["W"], arrays["G"])
-        volumes = report["volume"] and tuple(report["volume"])
-        areas, rest = tuple(report["area"]), (report["beyond"], warned(report))
-        return cls(*meshes, report["same_faces"], deviations, areas, volumes, *rest)
+    @property
+    def without_arrays(self) -> Comparison:
+        """The same without the meshes, and the values at their vertices."""
+        none = np.zeros((0, 3))
+        deviations = {name: replace(one, values=none) for name, one in self.deviations.items()}
+        return replace(self, a=(none, none), b=(none, none), deviations=deviations)
 
     @property
     def _signed(self) -> Deviation:

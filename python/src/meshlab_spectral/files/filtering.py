@@ -29,14 +29,14 @@ from meshlab_spectral.files.meshlab_files import (
     check_writable,
     left_behind,
     left_by_meshlab,
-    pymeshlab_mesh,
     read_with_meshlab,
+    rounding_warnings,
     set_quality,
     write_with_meshlab,
 )
 from meshlab_spectral.files.region import Region
 from meshlab_spectral.files.region_vertices import chosen_parts
-from meshlab_spectral.files.rounding import rounding_warnings
+from meshlab_spectral.files.request import Request
 from meshlab_spectral.files.script import apply_script
 from meshlab_spectral.files.sources import check_name, check_source
 from meshlab_spectral.files.touching import moved_alike, pieces
@@ -56,55 +56,27 @@ _BARE = {".ply": {"save_vertex_quality": False}}
 
 
 def filter_to_scratch(
-    source: Path,
-    scratch: Path,
-    options: Options,
-    on_stage: StageCallback,
-    verbose: bool = True,
-    mesh: str | None = None,
-    region: Region | None = None,
+    request: Request, scratch: Path, on_stage: StageCallback, verbose: bool = True
 ) -> dict[str, Any]:
-    """Filter a mesh file into another.
+    """Filter a mesh file into another, `scratch`, which after an error may be incomplete.
 
-    Parameters
-    ----------
-    source
-        A mesh file. All its meshes are filtered, each on its own, as placed in the scene, but those
-        whose borders coincide together; coinciding vertices move alike.
-    scratch
-        The file to write, from `writing_whole`; after an error it may be incomplete. In the format
-        of `source` only coordinates and normals change; another format is written by MeshLab, with
-        a warning that lists what is lost.
-    options
-        Options of the filter.
-    on_stage
-        Called with "reading", "filtering" and "writing" as these begin, with None, and with the
-        progress of the filter.
-    verbose
-        Whether the filter's report goes to standard error, as MeshLab's log does.
-    mesh
-        Filter only the mesh with this name.
-    region
-        Filter only this region, in place of the selection of the file.
+    The request has options of a filter. All meshes of its file, unless one is named, are filtered,
+    each on its own, as placed in the scene, but those whose borders coincide together; coinciding
+    vertices move alike. In the format of the source only coordinates and normals change; another
+    format is written by MeshLab, with a warning that lists what is lost. `on_stage` is called with
+    "reading", "filtering" and "writing" as these begin, with None, and with the progress of the
+    filter. If `verbose`, the filter's report goes to standard error, as MeshLab's log does.
 
-    Returns
-    -------
-    dict
-        The filter's report, as from `filter_mesh`, with the mesh's name, if any, as "mesh". For
-        several surfaces, a list of their reports as "meshes", and "warnings" and "max_displacement"
-        of all of them.
+    Returns the filter's report, as from `filter_mesh`, with the mesh's name, if any, as "mesh". For
+    several surfaces, a list of their reports as "meshes", and "warnings" and "max_displacement" of
+    all of them.
 
-    Raises
-    ------
-    MeshFileError
-        When `source` cannot be read or `scratch` cannot be written.
-    FormatError
-        When the extension of `scratch` cannot be written.
-    FilterError
-        When the filter rejects a mesh or the options.
-    OptionError
-        When no mesh has the name, or the region is empty.
+    Raises MeshFileError when the source cannot be read or `scratch` cannot be written, FormatError
+    when its extension cannot be written, FilterError when the filter rejects a mesh or the options,
+    and OptionError when no mesh has the name, or the region is empty.
     """
+    source, options, region = request.source, request.options, request.region
+    assert options is not None
     require_one_choice(options, region)
     if region is not None:
         options = options.from_dict({**options.as_dict(), "selected": True})
@@ -125,9 +97,9 @@ def filter_to_scratch(
     if format_of(source) and (
         source.suffix.lower() not in _READ_BY_MESHLAB or is_same_format(source, scratch)
     ):
-        return _filter_document(source, scratch, options, on_stage, verbose, mesh, region)
-    if mesh is not None:
-        raise OptionError(f"{source} is read as one mesh: leave out the name {mesh!r}")
+        return _filter_document(replace(request, options=options), scratch, on_stage, verbose)
+    if request.mesh is not None:
+        raise OptionError(f"{source} is read as one mesh: leave out the name {request.mesh!r}")
     return _through_meshlab(source, scratch, apply, on_stage, verbose)
 
 
@@ -150,15 +122,11 @@ def script_to_scratch(
 
 
 def _filter_document(
-    source: Path,
-    scratch: Path,
-    options: Options,
-    on_stage: StageCallback,
-    verbose: bool,
-    name: str | None,
-    region: Region | None,
+    request: Request, scratch: Path, on_stage: StageCallback, verbose: bool
 ) -> dict[str, Any]:
     """Filter the meshes of a document: each surface on its own, of one mesh or several pieces."""
+    source, options = request.source, request.options
+    assert options is not None
     on_stage("reading", None)
     check_source(source)
     stays = is_same_format(source, scratch)
@@ -166,9 +134,9 @@ def _filter_document(
         load()
         check_writable(scratch)
     document = open_document(source)
-    chosen = chosen_by_name(document, name)
+    chosen = chosen_by_name(document, request.mesh)
     shapes, names, reports, parted = _moved(
-        document.parts, chosen, options, on_stage, verbose, region
+        document.parts, chosen, options, on_stage, verbose, request.region
     )
     if stays:
         warnings = document.save(scratch, shapes)
@@ -399,13 +367,15 @@ def _agreed(mesh_set: Any, document: Document) -> Collection[str]:
     MeshLab folds concave polygons of PLY files, splits others of OFF files by rules of its own, and
     reads no quality that is called confidence. Returns the contents that are lost by that.
     """
+    import pymeshlab
+
     (part,) = document.parts
     mesh, lacking = mesh_set.current_mesh(), list[str]()
     if "polygons" in document.contents and _differ(mesh, part):
         data = {"v_normals_matrix": mesh.vertex_normal_matrix(), **_signal(part)}
         if mesh.has_vertex_color():
             data["v_color_matrix"] = mesh.vertex_color_matrix()
-        mesh_set.add_mesh(pymeshlab_mesh(part.vertices, part.faces, data))
+        mesh_set.add_mesh(pymeshlab.Mesh(part.vertices, part.faces, **data))
         lacking = ["texture coordinates", "texture names", "materials", "face colours"]
     elif part.quality is not None:
         set_quality(mesh_set, part.quality)

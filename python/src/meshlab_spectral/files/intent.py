@@ -12,40 +12,30 @@ from meshlab_spectral.files.extensions import is_same_format
 from meshlab_spectral.files.filtering import require_one_choice, wanted_attribute
 from meshlab_spectral.files.meshes import StageCallback, load_parts, whole_of
 from meshlab_spectral.files.meshlab_files import check_writable
-from meshlab_spectral.files.region import Region
 from meshlab_spectral.files.region_vertices import chosen_parts
+from meshlab_spectral.files.request import Request
 from meshlab_spectral.files.touching import pieces
 from meshlab_spectral.filters.arrays import mean_edge
-from meshlab_spectral.filters.option_types import Options
 from meshlab_spectral.plugin.loading import load
 
 
-def intent_of(
-    source: Path,
-    target: Path,
-    options: Options,
-    on_stage: StageCallback,
-    mesh: str | None = None,
-    region: Region | None = None,
-) -> dict[str, Any]:
-    """Read a mesh file, and describe what `filter_to_scratch` would do with it.
+def intent_of(request: Request, target: Path, on_stage: StageCallback) -> dict[str, Any]:
+    """Read a mesh file, and describe what `filter_to_scratch` would do with it to write `target`.
 
-    Parameters and errors are those of `filter_to_scratch`, `target` is what would be written.
-
-    Returns
-    -------
-    dict
-        "surfaces", for each one that would be filtered its "mesh", the name, "vertices", "faces",
-        "filtered_vertices" if there is a region or a selection, "diagonal", "mean_edge" and
-        "sizes", see `Options.sizes`; "is_patched", whether the output keeps all that is not moved.
+    Errors are those of `filter_to_scratch`. Returns "surfaces", for each one that would be filtered
+    its "mesh", the name, "vertices", "faces", "filtered_vertices" if there is a region or a
+    selection, "diagonal", "mean_edge" and "sizes", see `Options.sizes`; "is_patched", whether the
+    output keeps all that is not moved.
     """
+    source, options, region = request.source, request.options, request.region
+    assert options is not None
     require_one_choice(options, region)
     on_stage("reading", None)
     is_patched = not wanted_attribute(options, target) and is_same_format(source, target)
     if not is_patched:
         load()
         check_writable(target)
-    parts = load_parts(source, mesh)
+    parts = load_parts(source, request.mesh)
     wholes = [whole_of(group) for group in pieces(parts)]
     surfaces = []
     for part in filter(None, chosen_parts(wholes, options, region)):

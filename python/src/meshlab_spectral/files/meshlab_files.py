@@ -7,7 +7,7 @@ import locale
 import os
 import re
 import shutil
-from collections.abc import Collection
+from collections.abc import Callable, Collection
 from pathlib import Path
 from typing import Any
 from urllib.parse import unquote
@@ -19,7 +19,8 @@ from meshlab_spectral.files.extensions import WRITABLE
 from meshlab_spectral.files.whole_files import USUAL_FORMATS, resolved
 from meshlab_spectral.formats.budget import Budget, guarded
 from meshlab_spectral.formats.causes import other_kind
-from meshlab_spectral.formats.document import Document
+from meshlab_spectral.formats.digits import in_single_precision, precision_warnings
+from meshlab_spectral.formats.document import Array, Document
 from meshlab_spectral.formats.names import shown
 from meshlab_spectral.formats.opening import PATCHED
 from meshlab_spectral.formats.side_files import beside, is_outside
@@ -233,13 +234,6 @@ def _check_room(scratch: Path) -> None:
         )
 
 
-def pymeshlab_mesh(V: Any, F: Any, data: dict[str, Any]) -> Any:
-    """Return a `pymeshlab.Mesh` of arrays; `data` are further arguments of it."""
-    import pymeshlab
-
-    return pymeshlab.Mesh(V, F, **data)
-
-
 def set_quality(mesh_set: Any, quality: Any) -> None:
     """Give the vertices of the current mesh a quality, unless they have it."""
     mesh = mesh_set.current_mesh()
@@ -301,3 +295,30 @@ def _textures_to_be_saved(mesh_set: Any, scratch: Path, source: Path) -> bool:
     beside_input = scratch.parent.parent.samefile(resolved(source).parent)
     within = all(not name.is_absolute() and ".." not in name.parts for name in names)
     return within and not beside_input
+
+
+def _decimals(numbers: Array) -> Array:
+    return np.round(numbers, 6)
+
+
+def _six_digits(numbers: Array) -> Array:
+    size = np.where(numbers == 0, 1.0, np.abs(numbers))
+    step = 10.0 ** (np.floor(np.log10(size)) - 5)
+    return np.asarray(np.round(numbers / step) * step, dtype=np.float64)
+
+
+# Extensions of formats in which MeshLab writes fewer digits than it has: what is left of
+# coordinates, and what that is called.
+_ROUNDED: dict[str, tuple[Callable[[Array], Array], str]] = {
+    **dict.fromkeys(("stl", "3ds", "ctm", "nxs"), (in_single_precision, "single precision")),
+    **dict.fromkeys(("dae", "json", "wrl", "x3d"), (_six_digits, "six digits")),
+    **dict.fromkeys(("3mf", "dxf", "idtf", "xyz"), (_decimals, "six decimals")),
+}
+
+
+def rounding_warnings(before: Array, after: Array, scratch: Path) -> list[Warned]:
+    """Return the warning, if any, that MeshLab writes this format with too few digits."""
+    rounded = _ROUNDED.get(scratch.suffix[1:].lower())
+    if rounded is None or before.shape != after.shape:
+        return []
+    return precision_warnings(before, after, scratch.name, *rounded)

@@ -128,7 +128,7 @@ def denoise_preset(name: str, **options: object) -> DenoiseOptions:
     Raises
     ------
     OptionError
-        When there is no such preset, it is for `filter_mesh`, or an option is invalid.
+        As from `filter_preset`.
 
     Examples
     --------

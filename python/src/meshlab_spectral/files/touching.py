@@ -63,18 +63,9 @@ def moved_alike(
 ) -> tuple[list[Array], list[Warned]]:
     """Let parts move alike where they touch (contacts.h), by their mean displacement.
 
-    Parameters
-    ----------
-    parts
-        The meshes of a file.
-    moved
-        Their new vertices.
-    chosen
-        The parts that have been filtered; the others stay as they are.
-
-    Returns
-    -------
-    The new vertices, and warnings about parts that meet others which stay.
+    `parts` are the meshes of a file, `moved` their new vertices; those `chosen` have been filtered,
+    the others stay as they are. Returns the new vertices, and warnings about parts that meet others
+    which stay.
     """
     if len(parts) == 1:
         return list(moved), []

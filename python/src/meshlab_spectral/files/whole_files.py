@@ -28,29 +28,15 @@ _LONGEST_NAME = 200  # bytes of the output's name used in that of the scratch fo
 def writing_whole(target: Path, overwrite: bool = True) -> Iterator[Path]:
     """Yield a scratch file to write instead of `target`; move it into place on success.
 
-    The scratch file has the name of `target` and lies in a hidden folder next to it, which also
-    catches a format's side files (materials, textures) and lets them refer to each other by their
-    final names. Nothing of it remains after an error. If the process is killed, its scratch folder
-    remains: `remove_leftovers` recognizes it by its name.
+    The scratch file, which does not exist yet, has the name of `target` and lies in a hidden folder
+    next to it, which also catches a format's side files (materials, textures) and lets them refer
+    to each other by their final names. Nothing of it remains after an error. If the process is
+    killed, its scratch folder remains: `remove_leftovers` recognizes it by its name.
 
-    Parameters
-    ----------
-    target
-        The file to write.
-    overwrite
-        Whether to replace an existing file, even one created meanwhile. A file with the same
-        contents does not count.
-
-    Yields
-    ------
-    Path
-        The scratch file; it does not exist yet.
-
-    Raises
-    ------
-    MeshFileError
-        When the folder of `target` is missing or not writable (before the scratch file is yielded),
-        when the scratch file has not been written, or when another file is in the way.
+    Where `overwrite`, an existing file is replaced, even one created meanwhile; one with the same
+    contents does not count. Raises MeshFileError when the folder of `target` is missing or not
+    writable (before the scratch file is yielded), when the scratch file has not been written, or
+    when another file is in the way.
     """
     place = resolved(target)  # follow symbolic links, as cp does
     with _scratch_folder(target, place) as folder:
@@ -87,14 +73,9 @@ def check_target(target: Path) -> None:
 
 
 def remove_leftovers(folder: Path, target_name: str | None = None) -> None:
-    """Remove the scratch folders left by killed processes.
+    """Remove the scratch folders left by killed processes in a folder, which need not exist.
 
-    Parameters
-    ----------
-    folder
-        A folder of outputs, which need not exist.
-    target_name
-        Only remove those of the output with this name.
+    With `target_name`, only those of the output with this name.
     """
     try:
         entries = list(os.scandir(folder))
@@ -184,12 +165,7 @@ def _make_locked(folder: Path, name: str, stack: contextlib.ExitStack) -> Path:
 def _locked(folder: Path) -> Iterator[None]:
     """Hold the lock of a scratch folder.
 
-    Raises
-    ------
-    BlockingIOError
-        When another process holds it.
-    OSError
-        When the file system does not support locks.
+    Raises BlockingIOError when another process holds it, OSError when the file system has no locks.
     """
     from filelock import lock_descriptor  # a slow import
 

@@ -1,6 +1,6 @@
 """The plugin's filters, for meshes given as arrays.
 
-`fractional`, `denoise`, `signals`, `artefacts`, `harmonics` and `spectrum` call the filters through
-`calling` and `arrays`; `options` has the tables of their options, `transfer` the gain of the
-fractional filter.
+`fractional`, `denoise`, `signals`, `artefacts`, `harmonics`, `spectrum` and `texture` call the
+filters through `arrays` and `running`; `options` has the tables of their options, `transfer` the
+gain of the fractional filter.
 """

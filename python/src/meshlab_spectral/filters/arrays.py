@@ -17,19 +17,9 @@ def mesh_arrays(
 ) -> tuple[NDArray[np.float64], NDArray[np.int32]]:
     """Validate and convert the arrays of a mesh; pymeshlab would misread or reject them silently.
 
-    Parameters
-    ----------
-    mesh_or_vertices
-        A mesh of `mesh_objects`, or n x 3 coordinates.
-    faces
-        With coordinates: m x 3 vertex indices of triangles, from 0 to n - 1.
-
-    Raises
-    ------
-    ArrayError
-        When an array has the wrong shape or type, or an index is out of range.
-    ArgumentError
-        When a mesh is of no known kind.
+    These are n x 3 coordinates, and m x 3 vertex indices of triangles, from 0 to n - 1; or a mesh
+    of `mesh_objects`, alone. Raises ArrayError when an array has the wrong shape or type, or an
+    index is out of range, and ArgumentError when a mesh is of no known kind.
     """
     vertices = mesh_or_vertices
     kind = kind_of(mesh_or_vertices)

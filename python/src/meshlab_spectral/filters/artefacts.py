@@ -65,10 +65,8 @@ def measure_artefacts(
 
     Parameters
     ----------
-    vertices
-        Finite n x 3 coordinates, or a mesh as for `filter_mesh`, alone.
-    faces
-        With coordinates: m x 3 vertex indices of triangles, from 0 to n - 1; any topology.
+    vertices, faces
+        Coordinates and triangles, or a mesh, as for `filter_mesh`.
     feature_size
         Feature size of the applied low-pass or band, > 0: a length, or as "2%" of this mesh's
         diagonal, "6e" in its mean edges.
@@ -85,12 +83,8 @@ def measure_artefacts(
 
     Raises
     ------
-    ArrayError
-        When an array has the wrong shape or type, or an index is out of range.
-    OptionError
-        When `feature_size` is not positive or `laplacian` is unknown.
-    FilterError
-        When the mesh has no faces, no area, or non-finite coordinates.
+    SpectralError
+        As from `filter_mesh`: an OptionError when `feature_size` is not positive.
 
     Examples
     --------

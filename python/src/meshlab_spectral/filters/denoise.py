@@ -63,12 +63,8 @@ def denoise_mesh(
 
     Parameters
     ----------
-    mesh_or_vertices
-        Finite n x 3 coordinates, or a triangle mesh of pyvista, trimesh, meshio, Open3D, LaPy, pyFM
-        or pymeshlab, or a tuple (vertices, faces).
-    faces
-        With coordinates: m x 3 vertex indices of triangles, from 0 to n - 1; any topology and
-        orientation.
+    mesh_or_vertices, faces
+        As for `filter_mesh`.
     options
         All options below in one object, instead of by name.
     weights
@@ -99,17 +95,8 @@ def denoise_mesh(
 
     Raises
     ------
-    ArrayError
-        When an array has the wrong shape or type, or an index is out of range.
-    ArgumentError
-        When the mesh is of none of these libraries.
-    OptionError
-        When an option is unknown or has an invalid value.
-    FilterError
-        When the filter rejects the mesh: no faces, no area, or non-finite coordinates. It is a
-        MeshError, SolverError or MemoryLimitError, with the cause as `code`.
-    Cancelled
-        When `progress` has returned False.
+    SpectralError
+        As from `filter_mesh`.
 
     Examples
     --------

@@ -93,7 +93,8 @@ def filter_mesh(
         Finite n x 3 coordinates, or a triangle mesh of pyvista, trimesh, meshio, Open3D, LaPy, pyFM
         or pymeshlab, or a tuple (vertices, faces).
     faces
-        With coordinates: m x 3 vertex indices of triangles, from 0 to n - 1; any topology.
+        With coordinates: m x 3 vertex indices of triangles, from 0 to n - 1; any topology and
+        orientation.
     options
         All options below in one object, instead of by name.
     weights

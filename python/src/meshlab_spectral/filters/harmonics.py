@@ -306,11 +306,8 @@ def manifold_harmonics(
 
     Parameters
     ----------
-    mesh_or_vertices
-        Finite n x 3 coordinates, or a triangle mesh of pyvista, trimesh, meshio, Open3D, LaPy, pyFM
-        or pymeshlab, or a tuple (vertices, faces).
-    faces
-        With coordinates: m x 3 vertex indices of triangles, from 0 to n - 1; any topology.
+    mesh_or_vertices, faces
+        As for `filter_mesh`.
     basis_size
         Number of harmonics k, constants included; less than the number of vertices not fixed.
     laplacian
@@ -328,13 +325,9 @@ def manifold_harmonics(
 
     Raises
     ------
-    ArrayError
-        When an array has the wrong shape or type, or an index is out of range.
-    OptionError
-        When `laplacian` or `boundary` is unknown, or `basis_size` is not a positive integer.
-    FilterError
-        When the mesh has no faces, no area, non-finite coordinates, or too few vertices for
-        `basis_size`.
+    SpectralError
+        As from `filter_mesh`: an OptionError when `basis_size` is not a positive integer, a
+        FilterError when the mesh has too few vertices for it.
 
     Examples
     --------
@@ -385,12 +378,8 @@ def shape_dna(
 
     Raises
     ------
-    ArrayError
-        When an array has the wrong shape or type, or an index is out of range.
-    OptionError
-        When `laplacian` or `boundary` is unknown, or `count` is not an integer >= 2.
-    FilterError
-        When the mesh has no faces, no area, non-finite coordinates, or too few vertices.
+    SpectralError
+        As from `manifold_harmonics`: an OptionError when `count` is not an integer >= 2.
 
     Examples
     --------

@@ -22,14 +22,8 @@ def takes_options(
 ) -> Callable[[Function], Function]:
     """Spell out the ``**named`` of a function, for its `help` and for completion in notebooks.
 
-    Type checkers read the annotation of ``**named`` instead.
-
-    Parameters
-    ----------
-    *tables
-        Tables of options, whose fields are made with `option`.
-    names
-        Names of the options that the function takes; None: all.
+    Type checkers read the annotation of ``**named`` instead. `tables` are tables of options, whose
+    fields are made with `option`, of which the function takes those with `names`; None: all.
     """
 
     def spelled_out(function: Function) -> Function:

@@ -34,11 +34,8 @@ def laplacian(
 
     Parameters
     ----------
-    mesh_or_vertices
-        Finite n x 3 coordinates, or a triangle mesh of pyvista, trimesh, meshio, Open3D, LaPy, pyFM
-        or pymeshlab, or a tuple (vertices, faces).
-    faces
-        With coordinates: m x 3 vertex indices of triangles, from 0 to n - 1; any topology.
+    mesh_or_vertices, faces
+        As for `filter_mesh`.
     kind
         "intrinsic delaunay": that of the tufted cover (Sharp and Crane 2020), for any triangles;
         "cotangent": the paper's, for triangles with an area; "uniform": the connectivity only.
@@ -56,12 +53,8 @@ def laplacian(
 
     Raises
     ------
-    ArrayError
-        When an array has the wrong shape or type, or an index is out of range.
-    OptionError
-        When `kind` is unknown.
-    FilterError
-        When the mesh has no faces, no area or non-finite coordinates.
+    SpectralError
+        As from `filter_mesh`: an OptionError when `kind` is unknown.
     MissingPackageError
         When scipy is not installed.
 

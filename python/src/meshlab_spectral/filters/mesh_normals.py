@@ -37,19 +37,10 @@ def followed(
 ) -> dict[str, Any]:
     """Return those arrays in `data` that depend on positions, for vertices moved from V to X.
 
-    Normals turn as the surface does, as those of files do; tangents are made perpendicular to
-    them. What has no direction in the new shape stays.
-
-    Parameters
-    ----------
-    data
-        Arrays with a row for each vertex or face.
-    F, V, X
-        m x 3 corners; n x 3 coordinates before and after.
-    at
-        "vertices" or "faces", which have the rows.
-    normals
-        Names of normals that do not tell so.
+    Normals turn as the surface does, as those of files do; tangents are made perpendicular to them.
+    What has no direction in the new shape stays. The arrays have a row for each of the m triangles
+    F, or of the n vertices: `at` says "faces" or "vertices". `normals` are the names of normals
+    that do not tell so.
     """
     at_faces = at == "faces"
     count = len(F) if at_faces else len(V)

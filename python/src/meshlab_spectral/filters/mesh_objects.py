@@ -28,28 +28,17 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class MeshKind:
-    """The mesh class of a library.
+    """The mesh class of a library."""
 
-    Attributes
-    ----------
-    name
-        The library and the class.
-    mark
-        An attribute that distinguishes the class from the kinds before it.
-    arrays
-        Returns the n x 3 coordinates and m x 3 vertex indices of a mesh.
-    moved
-        Returns a copy of a mesh with new coordinates, n x 3; what it stores of the old ones, such
-        as normals, follows.
-    data
-        Returns the arrays at the vertices of a mesh, by name.
-    """
-
-    name: str
-    mark: str
+    name: str  # the library and the class
+    mark: str  # an attribute that distinguishes the class from the kinds before it
+    # Returns the n x 3 coordinates and m x 3 vertex indices of a mesh.
     arrays: Callable[[Any], tuple[Any, Any]]
+    # Returns a copy of a mesh with new coordinates, n x 3; what it stores of the old ones, such as
+    # normals, follows.
     moved: Callable[[Any, Array], Any]
-    data: Callable[[Any], Mapping[str, Any]]
+    # Returns the arrays at the vertices of a mesh, by name.
+    data: Callable[[Any], Mapping[str, Any]] = lambda mesh: {}
 
 
 def kind_of(mesh: Any) -> MeshKind | None:
@@ -132,10 +121,6 @@ def _pymeshlab_data(mesh: Any) -> dict[str, Any]:
     if mesh.has_vertex_color():
         data["color"] = mesh.vertex_color_matrix()
     return data
-
-
-def _pair_arrays(pair: Any) -> tuple[Any, Any]:
-    return pair[0], pair[1]
 
 
 def _is_pair(mesh: Any) -> bool:
@@ -300,35 +285,21 @@ def _pyfm_moved(mesh: Any, X: Array) -> Any:
     return moved
 
 
+def _point_data(mesh: Any) -> Mapping[str, Any]:
+    data: Mapping[str, Any] = mesh.point_data
+    return data
+
+
 PYMESHLAB = MeshKind(
     "pymeshlab.Mesh", "face_matrix", _pymeshlab_arrays, _pymeshlab_moved, _pymeshlab_data
 )
-_PAIR = MeshKind(
-    "a tuple (vertices, faces)",
-    "",  # recognized by `_is_pair`
-    _pair_arrays,
-    lambda pair, X: (X, pair[1]),
-    lambda pair: {},
-)
+# Recognized by `_is_pair`.
+_PAIR = MeshKind("a tuple (vertices, faces)", "", lambda pair: pair, lambda pair, X: (X, pair[1]))
 _KINDS = (
     PYMESHLAB,
-    MeshKind(
-        "pyvista.PolyData",
-        "regular_faces",
-        _pyvista_arrays,
-        _vtk_moved,
-        lambda mesh: mesh.point_data,
-    ),
-    MeshKind(
-        "pyvista.UnstructuredGrid",
-        "celltypes",
-        _grid_arrays,
-        _vtk_moved,
-        lambda mesh: mesh.point_data,
-    ),
-    MeshKind(
-        "meshio.Mesh", "cells_dict", _meshio_arrays, _meshio_moved, lambda mesh: mesh.point_data
-    ),
+    MeshKind("pyvista.PolyData", "regular_faces", _pyvista_arrays, _vtk_moved, _point_data),
+    MeshKind("pyvista.UnstructuredGrid", "celltypes", _grid_arrays, _vtk_moved, _point_data),
+    MeshKind("meshio.Mesh", "cells_dict", _meshio_arrays, _meshio_moved, _point_data),
     MeshKind(
         "open3d.geometry.TriangleMesh",
         "triangle_normals",
@@ -343,20 +314,8 @@ _KINDS = (
         _tensor_moved,
         lambda mesh: _tensor_data(mesh.vertex),
     ),
-    MeshKind(
-        "lapy.TriaMesh",
-        "tria_areas",
-        lambda mesh: (mesh.v, mesh.t),
-        _lapy_moved,
-        lambda mesh: {},
-    ),
-    MeshKind(
-        "pyFM.mesh.TriMesh",
-        "l2_sqnorm",
-        lambda mesh: (mesh.vertices, mesh.faces),
-        _pyfm_moved,
-        lambda mesh: {},
-    ),
+    MeshKind("lapy.TriaMesh", "tria_areas", lambda mesh: (mesh.v, mesh.t), _lapy_moved),
+    MeshKind("pyFM.mesh.TriMesh", "l2_sqnorm", _trimesh_arrays, _pyfm_moved),
     MeshKind(
         "nibabel.GiftiImage", "get_arrays_from_intent", _gifti_arrays, _gifti_moved, _gifti_data
     ),

@@ -66,16 +66,10 @@ def option(
     metavar: str | None = None,
     **facts: Any,
 ) -> Any:
-    """Make a field of a table of options.
+    """Make a field of a table of options; in its help, `|name|` is another option.
 
-    Parameters
-    ----------
-    default, explanation
-        Its default and its help, in which `|name|` is another option.
-    flags, metavar
-        How a command spells the option, unless like its name, and what it calls the value.
-    **facts
-        "range", that of a number in words.
+    `flags` and `metavar` are how a command spells the option, unless like its name, and what it
+    calls the value. Of `facts`, "range" is that of a number in words.
     """
     return field(
         default=default,

@@ -108,13 +108,7 @@ class BasisKeywords(TypedDict, total=False):
 
 @table_of("apply_coord_spectral_filter_fractional", "filter")
 class FilterOptions(Options):
-    """Options of Spectral Filter (Fractional), named as in MeshLab.
-
-    Raises
-    ------
-    OptionError
-        When a value is invalid; names the option, the value and what is allowed.
-    """
+    """Options of Spectral Filter (Fractional), named as in MeshLab; see `Options`."""
 
     if TYPE_CHECKING:
 
@@ -149,13 +143,7 @@ class FilterOptions(Options):
 
 @table_of("apply_coord_spectral_denoise", "denoise")
 class DenoiseOptions(Options):
-    """Options of Spectral Denoise, named as in MeshLab.
-
-    Raises
-    ------
-    OptionError
-        When a value is invalid; names the option, the value and what is allowed.
-    """
+    """Options of Spectral Denoise, named as in MeshLab; see `Options`."""
 
     if TYPE_CHECKING:
 
@@ -174,13 +162,7 @@ class DenoiseOptions(Options):
 
 @table_of("get_geometry_spectrum", "spectrum")
 class SpectrumOptions(Options):
-    """Options of Geometry Spectrum, named as in MeshLab.
-
-    Raises
-    ------
-    OptionError
-        When a value is invalid; names the option, the value and what is allowed.
-    """
+    """Options of Geometry Spectrum, named as in MeshLab; see `Options`."""
 
     if TYPE_CHECKING:
 
@@ -198,13 +180,7 @@ class SpectrumOptions(Options):
     noise=("--noise", "--nesting-index-s"),
 )
 class TextureOptions(Options):
-    """Options of Surface Texture, named as in MeshLab.
-
-    Raises
-    ------
-    OptionError
-        When a value is invalid; names the option, the value and what is allowed.
-    """
+    """Options of Surface Texture, named as in MeshLab; see `Options`."""
 
     if TYPE_CHECKING:
 
@@ -221,13 +197,7 @@ class TextureOptions(Options):
 
 @table_of("compute_scalar_manifold_harmonic_per_vertex", "basis", basis_size=("--basis-size", "-k"))
 class BasisOptions(Options):
-    """Options of Manifold Harmonics, named as in MeshLab.
-
-    Raises
-    ------
-    OptionError
-        When a value is invalid; names the option, the value and what is allowed.
-    """
+    """Options of Manifold Harmonics, named as in MeshLab; see `Options`."""
 
     if TYPE_CHECKING:
 

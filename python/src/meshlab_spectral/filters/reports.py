@@ -8,15 +8,38 @@ from __future__ import annotations
 from typing import TypedDict
 
 
-class _FilterReport(TypedDict):
+class _WarningReport(TypedDict):
+    warnings: list[str]
+    """Problems that were not errors, and what to do about them."""
+    warning_codes: list[str]
+    """For each of them, what it is about."""
+
+
+class _ShapeReport(_WarningReport):
+    folded_faces: int
+    """Number of faces that have folded over: turned against the input and the faces around them, of
+    more than 1 % of the mean area."""
+    has_volume: bool
+    """Whether the surface is closed and consistently oriented."""
+    limited_share: float
+    """Share of the surface, 0 to 1, at which the bound on it was reached."""
+    max_displacement: float
+    """Largest displacement of a vertex, length."""
+    mean_edge: float
+    """Mean edge, length."""
+    preserved_volumes: int
+    """Number of closed components whose volume was preserved."""
+    rms_displacement: float
+    """Root mean square of the displacements, length."""
+    volume_after: float
+    """Signed volume of the filtered surface, length³; meaningless unless `has_volume`."""
+    volume_before: float
+    """Signed volume of the surface, length³; meaningless unless `has_volume`."""
+
+
+class _SolvedReport(_WarningReport):
     accuracy_reached: bool
     """Whether the evaluation reached its accuracy."""
-    area_after: float
-    """Of the filtered surface, length²."""
-    area_before: float
-    """Of the surface, length²."""
-    components: int
-    """Number of connected components of the surface."""
     cutoff_frequency: float
     """2 π / feature size, radians per length."""
     error_estimate: float
@@ -25,29 +48,30 @@ class _FilterReport(TypedDict):
     """Number of sparse factorizations."""
     feature_size: float
     """As applied, length."""
+    solves: int
+    """Number of solves with one right-hand side."""
+
+
+class _SurfaceReport(_WarningReport):
+    components: int
+    """Number of connected components of the surface."""
     fixed_vertices: int
     """Number of vertices on a fixed boundary or a crease, unchanged."""
-    folded_faces: int
-    """Number of faces that have folded over: turned against the input and the faces around them, of
-    more than 1 % of the mean area."""
-    has_volume: bool
-    """Whether the surface is closed and consistently oriented."""
     joined_vertices: int
     """Number of vertices at seams that were joined to another."""
-    limited_share: float
-    """Share of the surface, 0 to 1, at which the bound on it was reached."""
-    max_displacement: float
-    """Largest displacement of a vertex, length."""
-    mean_edge: float
-    """Mean edge, length."""
+    unreferenced_vertices: int
+    """Number of vertices without faces, unchanged."""
+
+
+class _FilterReport(_ShapeReport, _SolvedReport, _SurfaceReport):
+    area_after: float
+    """Of the filtered surface, length²."""
+    area_before: float
+    """Of the surface, length²."""
     passes: int
     """Passes of automatic steps: this number repeats the run exactly; 0: not automatic."""
-    preserved_volumes: int
-    """Number of closed components whose volume was preserved."""
     products: int
     """Number of products of the Laplacian with one coordinate, in place of solves."""
-    rms_displacement: float
-    """Root mean square of the displacements, length."""
     rounded_creases: float
     """Largest displacement along sharp edges, which `crease_angle` 50 keeps, length; 0 where they
     hardly moved farther than the rest."""
@@ -55,8 +79,6 @@ class _FilterReport(TypedDict):
     """Share of the surface, 0 to 1, that shrinks to lines or points."""
     singular_part: float
     """Share of the surface, 0 to 1, on which `tolerance` was not reached."""
-    solves: int
-    """Number of solves with one right-hand side."""
     step_error: float
     """With automatic steps, estimated error over all but a thousandth of the input surface, without
     what collapses, length."""
@@ -70,16 +92,6 @@ class _FilterReport(TypedDict):
     tolerance_reached: bool
     """With automatic steps, whether all but a thousandth of the input surface is within
     `tolerance`, what collapses included."""
-    unreferenced_vertices: int
-    """Number of vertices without faces, unchanged."""
-    volume_after: float
-    """Signed volume of the filtered surface, length³; meaningless unless `has_volume`."""
-    volume_before: float
-    """Signed volume of the surface, length³; meaningless unless `has_volume`."""
-    warnings: list[str]
-    """Problems that were not errors, and what to do about them."""
-    warning_codes: list[str]
-    """For each of them, what it is about."""
 
 
 class FilterReport(_FilterReport, total=False):
@@ -97,28 +109,11 @@ class FilterReport(_FilterReport, total=False):
     """Residuals of the harmonics, relative."""
 
 
-class _DenoiseReport(TypedDict):
-    components: int
-    """Number of connected components of the surface."""
+class _DenoiseReport(_ShapeReport, _SurfaceReport):
     estimated_noise_height: float
     """Measured standard deviation of the noise along the normals, length."""
     estimated_noise_size: float
     """Measured distance over which the noise is correlated, length."""
-    fixed_vertices: int
-    """Number of vertices on a fixed boundary or a crease, unchanged."""
-    folded_faces: int
-    """Number of faces that have folded over: turned against the input and the faces around them, of
-    more than 1 % of the mean area."""
-    has_volume: bool
-    """Whether the surface is closed and consistently oriented."""
-    joined_vertices: int
-    """Number of vertices at seams that were joined to another."""
-    limited_share: float
-    """Share of the surface, 0 to 1, at which the bound on it was reached."""
-    max_displacement: float
-    """Largest displacement of a vertex, length."""
-    mean_edge: float
-    """Mean edge, length."""
     noise_correlation: float
     """Measured correlation between neighbouring vertices; above 0.2 it is shape."""
     noise_height: float
@@ -134,28 +129,14 @@ class _DenoiseReport(TypedDict):
     """Share of the surface with noise, 0 to 1."""
     noise_size: float
     """Of the noise that was filtered, length; 0: independent at every vertex, or none."""
-    preserved_volumes: int
-    """Number of closed components whose volume was preserved."""
-    rms_displacement: float
-    """Root mean square of the displacements, length."""
     rounds: int
     """Number of weak filters that were applied to the normals; 0: nothing changed."""
     spikes: int
     """Number of vertices off the surface that were put back."""
-    unreferenced_vertices: int
-    """Number of vertices without faces, unchanged."""
-    volume_after: float
-    """Signed volume of the filtered surface, length³; meaningless unless `has_volume`."""
-    volume_before: float
-    """Signed volume of the surface, length³; meaningless unless `has_volume`."""
     voxel_size: list[float]
     """Of the volume that was segmented, along each axis, length; 0: none."""
     summary: str
     """What was found and done, in one line."""
-    warnings: list[str]
-    """Problems that were not errors, and what to do about them."""
-    warning_codes: list[str]
-    """For each of them, what it is about."""
 
 
 class DenoiseReport(_DenoiseReport, total=False):
@@ -165,14 +146,7 @@ class DenoiseReport(_DenoiseReport, total=False):
     """With `store_noise_height`, height of the noise at each of the n vertices, length; 0: none."""
 
 
-class _ScalarsReport(TypedDict):
-    warnings: list[str]
-    """Problems that were not errors, and what to do about them."""
-    warning_codes: list[str]
-    """For each of them, what it is about."""
-
-
-class ScalarsReport(_ScalarsReport, total=False):
+class ScalarsReport(_WarningReport, total=False):
     """Report of `filter_scalars`; lengths are in the units of the mesh."""
 
     columns: list[ScalarsReport]
@@ -205,95 +179,20 @@ class ScalarsReport(_ScalarsReport, total=False):
     """Number of vertices whose value is NaN, unchanged."""
 
 
-class ColorsReport(TypedDict):
+class ColorsReport(_SolvedReport, _SurfaceReport):
     """Report of `filter_colors`; lengths are in the units of the mesh."""
 
-    accuracy_reached: bool
-    """Whether the evaluation reached its accuracy."""
     clamped_values: int
     """Number of red, green and blue levels that were clamped to 0 to 255."""
-    components: int
-    """Number of connected components of the surface."""
-    cutoff_frequency: float
-    """2 π / feature size, radians per length."""
-    error_estimate: float
-    """Estimated error of the evaluation, relative to the size of what is filtered."""
-    factorizations: int
-    """Number of sparse factorizations."""
-    feature_size: float
-    """As applied, length."""
-    fixed_vertices: int
-    """Number of vertices on a fixed boundary or a crease, unchanged."""
-    joined_vertices: int
-    """Number of vertices at seams that were joined to another."""
     max_change: float
     """Largest change of a value, in its units (colours: levels of 0 to 255)."""
     rms_change: float
     """Root mean square of the changes over the surface, in the units of the values."""
-    solves: int
-    """Number of solves with one right-hand side."""
-    unreferenced_vertices: int
-    """Number of vertices without faces, unchanged."""
     vertices_without_data: int
     """Number of vertices whose value is NaN, unchanged."""
-    warnings: list[str]
-    """Problems that were not errors, and what to do about them."""
-    warning_codes: list[str]
-    """For each of them, what it is about."""
 
 
-class SpectrumReport(TypedDict):
-    """Report of `meshlab-spectral spectrum`; lengths are in the units of the mesh."""
-
-    amplitudes: list[float]
-    """Amplitudes of the harmonics of `frequencies`, length; 0 for constants."""
-    area: float
-    """Of the surface, length²."""
-    band_amplitudes: list[float]
-    """Amplitudes of the third octaves of `band_feature_sizes`, length."""
-    band_feature_sizes: list[float]
-    """Centres of the third octaves with at least 30 harmonics, descending, length."""
-    band_noise: list[float]
-    """Amplitudes that white noise of height 1 at the vertices has in these third octaves."""
-    cumulative_energy: list[float]
-    """Share of the energy in each octave and all larger ones, ascending to 1."""
-    default_feature_size: float
-    """Default of `feature_size` for this mesh, length."""
-    diagonal: float
-    """Of the bounding box, length."""
-    feature_size_50: float
-    """Half of the energy is in features of at least this size, length."""
-    feature_size_90: float
-    """90 % of the energy is in features of at least this size, length."""
-    feature_size_99: float
-    """99 % of the energy is in features of at least this size, length."""
-    frequencies: list[float]
-    """Of the lowest harmonics, ascending, radians per length; 0 for constants."""
-    mean_edge: float
-    """Mean edge, length."""
-    mismatch: float
-    """Share of the energy that may belong to other octaves; above 0.01 with a warning."""
-    noise_feature_size: float
-    """In details smaller than this there is more noise than shape, length; 0: in none."""
-    noise_height: float
-    """Of the noise that was filtered or found, length; 0: none."""
-    octave_amplitudes: list[float]
-    """Amplitudes of the octaves, root mean square over the surface, length."""
-    octave_energies: list[float]
-    """Energies of the octaves, length⁴."""
-    octave_feature_sizes: list[float]
-    """Centres of the octaves, descending, length."""
-    total_energy: float
-    """Integral of the squared length of the shape over the surface, length⁴."""
-    summary: str
-    """What was found and done, in one line."""
-    warnings: list[str]
-    """Problems that were not errors, and what to do about them."""
-    warning_codes: list[str]
-    """For each of them, what it is about."""
-
-
-class _TextureReport(TypedDict):
+class _TextureReport(_WarningReport):
     Sa: float
     """Mean of the magnitude of the height, length."""
     Sdq: float
@@ -346,10 +245,6 @@ class _TextureReport(TypedDict):
     """Number of others on parts thinner than the waviness cutoff, left out, too."""
     waviness: float
     """Cutoff of the L-filter, length."""
-    warnings: list[str]
-    """Problems that were not errors, and what to do about them."""
-    warning_codes: list[str]
-    """For each of them, what it is about."""
 
 
 class TextureReport(_TextureReport, total=False):

@@ -41,34 +41,17 @@ class TiledSurface(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class Run:
-    """What a filter of the core has returned; None where it has no such result.
+    """What a filter of the core has returned; None where it has no such result."""
 
-    Attributes
-    ----------
-    vertices
-        n x 3 new coordinates.
-    details
-        n x 3 differences, input minus result.
-    values
-        n x c new values at the vertices.
-    basis
-        n x k harmonics.
-    columns
-        For several columns of `values`, a report of each.
-    report
-        Numbers, flags and arrays; "warnings", a list of problems that were not errors; "summary",
-        what a filter that chooses by itself found and did.
-    text
-        The report as lines for a log.
-    """
-
+    # Numbers, flags and arrays; "warnings", a list of problems that were not errors; "summary",
+    # what a filter that chooses by itself found and did.
     report: dict[str, Any]
-    text: str
-    vertices: Array | None = None
-    details: Array | None = None
-    values: Array | None = None
-    basis: Array | None = None
-    columns: list[dict[str, Any]] | None = None
+    text: str  # the report as lines for a log
+    vertices: Array | None = None  # n x 3 new coordinates
+    details: Array | None = None  # n x 3 differences, input minus result
+    values: Array | None = None  # n x c new values at the vertices
+    basis: Array | None = None  # n x k harmonics
+    columns: list[dict[str, Any]] | None = None  # for several columns of `values`, a report of each
 
     @property
     def plain_report(self) -> dict[str, Any]:
@@ -91,36 +74,14 @@ def run(
 ) -> Run:
     """Apply a filter of the core.
 
-    Parameters
-    ----------
-    name
-        The filter's Python name in pymeshlab.
-    V, F
-        As from `mesh_arrays`.
-    options
-        Values of the filter's parameters; the others keep their defaults.
-    selected
-        n booleans, for the option `selected`.
-    values
-        n x k numbers, or n x 3 levels of 0 to 255, to filter or as weights.
-    gain
-        In place of a transfer function.
-    whole
-        The surface that the mesh is a tile of.
-    progress
-        True shows it. A function is called about twenty times a second in this thread with the
-        current stage and the fraction done, 0 to 1; it cancels by returning False.
-    threads
-        Number of threads; by default that of `set_threads`.
+    `name` is the filter's in pymeshlab, V and F are as from `mesh_arrays`; parameters that
+    `options` lack keep their defaults. `selected` are n booleans, for the option of this name;
+    `values` n x k numbers, or n x 3 levels of 0 to 255, to filter or as weights; `gain` stands in
+    place of a transfer function; `whole` is the surface that the mesh is a tile of. `progress`,
+    called in this thread, and `threads` are as for `filter_mesh`.
 
-    Raises
-    ------
-    OptionError, MeshError, SolverError, MemoryLimitError
-        With the reason and what to do.
-    Cancelled
-        When `progress` has returned False.
-    KeyboardInterrupt
-        On Ctrl-C, within 0.5 s.
+    Raises OptionError, MeshError, SolverError or MemoryLimitError, with the reason and what to do;
+    Cancelled when `progress` has returned False, and KeyboardInterrupt within 0.5 s of Ctrl-C.
     """
     _core.set_memory_limit(limits.given_memory_limit() or 0)
     with progress_callback(progress) as on_progress:

@@ -30,15 +30,8 @@ def filter_shape(
 
     The mesh is as for `mesh_arrays`; errors are those of `mesh_arrays` and `run`. `weights` and
     `selection` are what the options `weight` and `selected` refer to; a pymeshlab mesh has its own,
-    too.
-
-    Returns
-    -------
-    result
-        n x 3 coordinates, or a mesh of the type passed, with its data; n x 3 differences if details
-        are wanted.
-    report : dict
-        With lists instead of arrays.
+    too. Returns n x 3 coordinates, or a mesh of the type passed, with its data, or n x 3
+    differences if details are wanted; and the report, with lists instead of arrays.
     """
     V, F = mesh_arrays(mesh_or_vertices, faces)
     kind = kind_of(mesh_or_vertices)

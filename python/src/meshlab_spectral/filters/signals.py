@@ -61,11 +61,8 @@ def filter_scalars(
 
     Parameters
     ----------
-    mesh_or_vertices
-        Finite n x 3 coordinates, or a triangle mesh of pyvista, trimesh, meshio, Open3D, LaPy, pyFM
-        or pymeshlab, or a tuple (vertices, faces).
-    faces
-        With coordinates: m x 3 vertex indices of triangles, from 0 to n - 1; any topology.
+    mesh_or_vertices, faces
+        As for `filter_mesh`.
     values
         n numbers, or n x k for k fields, each filtered on its own, or the name of such an array in
         the mesh; many together take a fifth of the time that they take one by one. NaN means no
@@ -93,13 +90,9 @@ def filter_scalars(
 
     Raises
     ------
-    ArrayError
-        When an array has the wrong shape or type, or an index is out of range.
-    OptionError
-        When an option is unknown, has an invalid value, or applies only to shapes.
-    FilterError
-        When the mesh has no faces, no area or non-finite coordinates, a value is infinite, or all
-        are NaN.
+    SpectralError
+        As from `filter_mesh`: an OptionError when an option applies only to shapes, a FilterError
+        when a value is infinite, or all are NaN.
 
     Examples
     --------

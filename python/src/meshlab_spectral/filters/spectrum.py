@@ -158,11 +158,8 @@ def geometry_spectrum(
 
     Parameters
     ----------
-    mesh_or_vertices
-        Finite n x 3 coordinates, or a triangle mesh of pyvista, trimesh, meshio, Open3D, LaPy, pyFM
-        or pymeshlab, or a tuple (vertices, faces).
-    faces
-        With coordinates: m x 3 vertex indices of triangles, from 0 to n - 1; any topology.
+    mesh_or_vertices, faces
+        As for `filter_mesh`.
     basis_size
         Number of harmonics to measure individually, including constants, which takes most of the
         time; 0 for the octaves alone. Less than the number of vertices not fixed if there are more
@@ -183,13 +180,10 @@ def geometry_spectrum(
 
     Raises
     ------
-    ArrayError
-        When an array has the wrong shape or type, or an index is out of range.
-    OptionError
-        When `laplacian` or `boundary` is unknown, or `basis_size` is not an integer >= 0.
-    FilterError
-        When the mesh has no faces, no area or non-finite coordinates, `basis_size` is too large, or
-        a fixed boundary leaves nothing to measure, as in a flat mesh.
+    SpectralError
+        As from `filter_mesh`: an OptionError when `basis_size` is not an integer >= 0, a
+        FilterError when it is too large, or a fixed boundary leaves nothing to measure, as in a
+        flat mesh.
 
     Examples
     --------

@@ -27,54 +27,16 @@ if TYPE_CHECKING:
 class SurfaceTexture:
     """The roughness of a surface, with the parameters of ISO 25178-2.
 
-    Lengths are in the units of the mesh; means are over the reference surface.
+    Lengths are in the units of the mesh; means are over the reference surface. Besides `height`,
+    the attributes are the entries of `TextureReport`, arrays in place of its lists; None or ""
+    where there is no such number. `Sal` and `Str` are of height maps, whose vertices are on a
+    regular grid.
 
     Attributes
     ----------
     height
         Height of each of the n vertices above the reference surface, along its normal; 0 where
         nothing is evaluated.
-    Sa, Sq
-        Mean magnitude and root mean square of the height.
-    Ssk, Sku
-        Skewness and kurtosis of the heights; 3 is the kurtosis of a normal distribution.
-    Sp, Sv, Sz
-        Height of the highest peak, depth of the deepest valley, their sum.
-    Sdq, Sdr
-        Root mean square of the slope; additional area relative to the reference surface.
-    Sk, Spk, Svk
-        Height of the core; reduced height of the peaks above and depth of the valleys below it.
-    Smr1, Smr2
-        Shares of the area above the upper and the lower end of the core, 0 to 1.
-    waviness, noise
-        Cutoffs that were applied, length units; noise = 0: none.
-    area
-        Area that was evaluated.
-    histogram_heights, histogram_shares
-        Centres of the 64 bins of the histogram of the heights, ascending, and the share of the area
-        in each.
-    bearing_heights
-        Bearing curve (Abbott-Firestone): 101 heights that 0, 1, ..., 100 % of the area exceed.
-    vertices_evaluated, vertices_left_out
-        Numbers of vertices that count, and of selected ones within a cutoff of a boundary or a
-        crease, or not on the fitted shape.
-    Sq_left_out
-        Root mean square height of those near a boundary; a warning tells if it is another one.
-    vertices_too_thin
-        Number of others on parts thinner than the waviness cutoff, left out, too; a warning names
-        the first.
-    error_estimate
-        Estimated root mean square error of the heights, length units.
-    warnings
-        Problems that were not errors.
-    Sal, Str
-        Of a height map, whose vertices are on a regular grid: shortest lag at which the
-        autocorrelation falls to .2, length units; that over the longest such lag, 0 to 1, or None
-        if this is longer than half of the map, as along grooves.
-    form_radius
-        Radius of the sphere or cylinder that was fitted, if one was.
-    unit
-        What a length is, if the file says so; else "".
     """
 
     height: NDArray[np.float64]
@@ -129,15 +91,6 @@ class SurfaceTexture:
             if not numbers[name]:
                 del numbers[name]
         return cast(TextureReport, plain(numbers))
-
-    @classmethod
-    def from_report(cls, report: Mapping[str, Any], height: NDArray[np.float64]) -> SurfaceTexture:
-        """Return the texture of a `report`, with the heights of the vertices or none."""
-        numbers: dict[str, Any] = {
-            name: np.array(value) if isinstance(value, list) and "warning" not in name else value
-            for name, value in report.items()
-        }
-        return cls(height=height, **numbers)
 
     def __repr__(self) -> str:
         return line(self)
@@ -203,12 +156,9 @@ def surface_texture(
 
     Raises
     ------
-    ArrayError
-        When an array has the wrong shape or type, or an index is out of range.
-    OptionError
-        When a size or the angle is out of range, or nothing is left to evaluate.
-    FilterError
-        When the mesh has no faces, no area, or non-finite coordinates.
+    SpectralError
+        As from `filter_mesh`: an OptionError when a size or the angle is out of range, or nothing
+        is left to evaluate.
 
     Examples
     --------

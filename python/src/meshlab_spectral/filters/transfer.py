@@ -41,24 +41,10 @@ class MeshLengths:
 def gain(options: FilterOptions, x: Array, lengths: MeshLengths | None = None) -> Array:
     """Compute the gain of a filter, (stop_gain + (pass_gain - stop_gain) B(x))^power or custom.
 
-    Parameters
-    ----------
-    options
-        Options of the filter.
-    x
-        Relative frequencies omega / omega_c = feature size / wavelength, >= 0.
-    lengths
-        Lengths of the mesh, which a custom transfer function needs.
-
-    Returns
-    -------
-    array
-        Gains at `x`. The constant mode of a surface always has gain 1, whatever the gain at 0.
-
-    Raises
-    ------
-    OptionError
-        When a custom transfer function is invalid; the message says where.
+    `x` are relative frequencies omega / omega_c = feature size / wavelength, >= 0. A custom
+    transfer function needs the `lengths` of the mesh. Returns gains at `x`; the constant mode of a
+    surface always has gain 1, whatever the gain at 0. Raises OptionError when a custom transfer
+    function is invalid; the message says where.
     """
     if lengths is None:
         if options.filter_type == "custom":

@@ -41,23 +41,22 @@ def _kind(name: str, endings: str, pattern: bytes, remedy: str = "") -> _Kind:
 
 
 _UNPACK, _NO_MESH = "unpack it first", "name a mesh file"
+_XML = rb"\s*(?:<[?!][^>]*>\s*)*"  # before the first element
 _KINDS = [
     _kind("PLY", "ply", rb"ply\s*[\r\n]"),
     _kind("binary glTF", "glb", rb"glTF"),
     _kind("a USD package", "usdz", rb"PK\x03\x04.{26}[^\0]{1,200}\.usd[ac]?"),
     _kind("3MF", "3mf", rb"PK\x03\x04.*(?:\[Content_Types\]|3D/|_rels/)"),
     _kind("legacy VTK", "vtk", rb"# vtk DataFile"),
-    _kind("VTK PolyData", "vtp", rb"\s*(?:<[?!][^>]*>\s*)*<VTKFile[^>]*type=.PolyData"),
-    _kind(
-        "VTK UnstructuredGrid", "vtu", rb"\s*(?:<[?!][^>]*>\s*)*<VTKFile[^>]*type=.UnstructuredGrid"
-    ),
+    _kind("VTK PolyData", "vtp", _XML + rb"<VTKFile[^>]*type=.PolyData"),
+    _kind("VTK UnstructuredGrid", "vtu", _XML + rb"<VTKFile[^>]*type=.UnstructuredGrid"),
     _kind(
         "a data set of VTK without a surface",
         "",
-        rb"\s*(?:<[?!][^>]*>\s*)*<VTKFile",
+        _XML + rb"<VTKFile",
         "extract its surface first (in ParaView: Filters > Extract Surface), and save it as .vtp",
     ),
-    _kind("GIFTI", "gii", rb"\s*(?:<[?!][^>]*>\s*)*<GIFTI"),
+    _kind("GIFTI", "gii", _XML + rb"<GIFTI"),
     _kind("X3P", "x3p", rb"PK\x03\x04.{26}(?:main\.xml|bindata/)"),
     _kind("Digital Surf", "sur", rb"DIGITAL SURF|DSCOMPRESSED"),
     _kind("Gwyddion", "gwy", rb"GWYP"),
@@ -66,8 +65,8 @@ _KINDS = [
     _kind("SDF", "sdf", rb"[ab]ISO-[12]\.0"),
     _kind("TrueMap", "tmd", rb"Binary TrueMap Data File"),
     _kind("TIFF", "tif tiff", rb"II[*+]\0|MM\0[*+]"),
-    _kind("COLLADA", "dae", rb"\s*(?:<[?!][^>]*>\s*)*<COLLADA"),
-    _kind("X3D", "x3d", rb"\s*(?:<[?!][^>]*>\s*)*<X3D"),
+    _kind("COLLADA", "dae", _XML + rb"<COLLADA"),
+    _kind("X3D", "x3d", _XML + rb"<X3D"),
     _kind("VRML", "wrl", rb"#VRML"),
     _kind("FBX", "fbx", rb"Kaydara FBX|; FBX"),
     _kind("E57", "e57", rb"ASTM-E57"),
@@ -82,7 +81,7 @@ _KINDS = [
     _kind(
         "a web page",
         "",
-        rb"(?i)\s*(?:<[?!][^>]*>\s*)*<html",
+        _XML + rb"(?i:<html)",
         "the download has failed: download the mesh itself",
     ),
     _kind(
@@ -123,14 +122,8 @@ _COMMAS = re.compile(rb"(?m)^[ \t]*(?:v[nt]?[ \t]+|vertex[ \t]+)?-?\d+,\d+[ \t]+
 def unreadable(path: Path, reason: object, ending: str = "") -> MeshFileError:
     """Return the error for a file that a reader has refused, with the cause.
 
-    Parameters
-    ----------
-    path
-        The file.
-    reason
-        What is wrong in it and where, or the reader's exception.
-    ending
-        The format in which it has been read, as an extension; by default that of its name.
+    `reason` is what is wrong in it and where, or the reader's exception; `ending` is the format in
+    which it has been read, as an extension, by default that of its name.
     """
     ending = ending or ending_of(path.name).lower()
     ending = ending if ending in FORMATS else FREE_SURFER

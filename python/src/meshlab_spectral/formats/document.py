@@ -22,37 +22,20 @@ Indices = NDArray[np.int64]
 
 @dataclass(frozen=True, eq=False)
 class Part:
-    """A mesh of a file, as placed in its scene.
+    """A mesh of a file, as placed in its scene."""
 
-    Attributes
-    ----------
-    name
-        Its name in the file; "" if it has none.
-    vertices
-        n x 3, in the units of the file, with the transforms of its scene applied.
-    faces
-        m x 3 vertex indices; polygons are split into triangles.
-    quality
-        n numbers that MeshLab would read as the vertex quality; None if there are none.
-    selected
-        n booleans, the vertices that MeshLab would show as selected and those of selected faces;
-        None if nothing is selected.
-    copies
-        4 x 4 transforms of the vertices to where the scene has the mesh again.
-    is_shown
-        Whether it is in the scene that the file shows first.
-    unit
-        What a length is; "" if the file does not say so.
-    """
-
-    name: str
-    vertices: Array
-    faces: Indices
+    name: str  # its name in the file; "" if it has none
+    vertices: Array  # n x 3, in the units of the file, with the transforms of its scene applied
+    faces: Indices  # m x 3 vertex indices; polygons are split into triangles
+    # n numbers that MeshLab would read as the vertex quality; None if there are none.
     quality: Array | None = None
+    # n booleans, the vertices that MeshLab would show as selected and those of selected faces; None
+    # if nothing is selected.
     selected: NDArray[np.bool_] | None = None
+    # 4 x 4 transforms of the vertices to where the scene has the mesh again.
     copies: tuple[Array, ...] = ()
-    is_shown: bool = True
-    unit: str = ""
+    is_shown: bool = True  # whether it is in the scene that the file shows first
+    unit: str = ""  # what a length is; "" if the file does not say so
 
 
 def joined(parts: Sequence[Part]) -> tuple[Array, Indices]:
@@ -64,27 +47,15 @@ def joined(parts: Sequence[Part]) -> tuple[Array, Indices]:
 
 @dataclass
 class Document(ABC):
-    """A mesh file that has been read.
+    """A mesh file that has been read."""
 
-    Attributes
-    ----------
-    path
-        The file.
-    parts
-        Its meshes, at least one.
-    contents
-        What it holds besides coordinates and triangles, in the user's terms ("colours", "texture
-        coordinates"), for the warning about what another format loses.
-    warnings
-        Problems noticed while reading.
-    largest_face
-        Corners of the largest polygon; 3 where it does not matter.
-    """
-
-    path: Path
-    parts: list[Part]
+    path: Path  # the file
+    parts: list[Part]  # its meshes, at least one
+    # What it holds besides coordinates and triangles, in the user's terms ("colours", "texture
+    # coordinates"), for the warning about what another format loses.
     contents: list[str] = field(default_factory=list)
-    warnings: list[Warned] = field(default_factory=list)
+    warnings: list[Warned] = field(default_factory=list)  # problems noticed while reading
+    # Corners of the largest polygon; 3 where it does not matter.
     largest_face: int = field(default=3, kw_only=True)
 
     def side_files(self) -> Iterable[str]:
@@ -103,25 +74,11 @@ class Document(ABC):
     def save(self, target: Path, moved: Sequence[Array]) -> list[Warned]:
         """Write the file with new coordinates, in its own format.
 
-        Unchanged coordinates keep their bytes. Normals follow the new shape.
-
-        Parameters
-        ----------
-        target
-            The file to write; side files that it refers to by relative paths are copied next to it,
-            unless they are already there.
-        moved
-            The new vertices of each part, n x 3, as placed in the scene.
-
-        Returns
-        -------
-        list of str
-            Warnings about what could not be updated, or is written with too few digits.
-
-        Raises
-        ------
-        OSError
-            When `target` cannot be written.
+        Unchanged coordinates keep their bytes. Normals follow the new shape. Side files that it
+        refers to by relative paths are copied next to `target`, unless they are already there.
+        `moved` are the new vertices of each part, n x 3, as placed in the scene. Returns warnings
+        about what could not be updated, or is written with too few digits. Raises OSError when
+        `target` cannot be written.
         """
         pairs = zip(self.parts, moved, strict=True)
         if all(np.array_equal(part.vertices, new) for part, new in pairs) and self.keeps(target):

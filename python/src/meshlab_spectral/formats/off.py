@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
@@ -29,7 +29,14 @@ from meshlab_spectral.formats.document import (
 from meshlab_spectral.formats.normals import area_vectors, following_normals
 from meshlab_spectral.formats.polygons import triangles
 from meshlab_spectral.formats.rows import chunks
-from meshlab_spectral.formats.text import Change, Lines, as_integers, lines_of, write_patched
+from meshlab_spectral.formats.text import (
+    Change,
+    Lines,
+    as_integers,
+    lines_of,
+    rows_in_any_lines,
+    write_patched,
+)
 from meshlab_spectral.warned import Warned
 
 _REMEDY = "save it as PLY, or as text OFF with vertices x y z"
@@ -41,46 +48,20 @@ _HEADER = re.compile(rb"(?P<letters>(?:ST|C|N|4|n)*)OFF(?P<count>[+-]?\d*)")
 @dataclass(kw_only=True)
 class _Off(Document):
     content: bytes
-    rows: _Rows
+    starts: Indices  # byte offsets of the vertices
+    normals: int | None  # the word of the first coordinate of their normals, if there are any
+    directions: Array  # n x 3 normals
 
     def write(self, target: Path, moved: Sequence[Array]) -> list[Warned]:
         (part,), (after,) = self.parts, moved
-        rows = self.rows
-        digits = digits_for(part.vertices, after)
-        changes = [rows.change(0, part.vertices, after, digits)]
-        if rows.normals is not None:
-            before = rows.table[:, rows.normals : rows.normals + 3]
-            normals = following_normals(part.vertices, after, part.faces, before)
-            changes.append(rows.change(rows.normals, before, normals, SINGLE))
-        if rows.starts is None:  # as one row
-            changes = [_merged(changes, rows)]
+        before, digits = part.vertices, digits_for(part.vertices, after)
+        changes: list[Change] = [(self.starts, 0, before, after, digits)]
+        if self.normals is not None:
+            normals = following_normals(before, after, part.faces, self.directions)
+            changes.append((self.starts, self.normals, self.directions, normals, SINGLE))
         with target.open("wb") as file:
             write_patched(file, self.content, changes)
         return []
-
-
-@dataclass(kw_only=True)
-class _Rows:
-    """The numbers of the vertices."""
-
-    table: Array  # n x k
-    starts: Indices | None  # byte offsets of the rows; None if these are not lines
-    begin: int  # of the first
-    normals: int | None = None  # the column of the first coordinate, if there are normals
-
-    def change(self, column: int, before: Array, after: Array, digits: int) -> Change:
-        starts = np.zeros(0, np.int64) if self.starts is None else self.starts
-        return starts, column, before, after, digits
-
-
-def _merged(changes: Sequence[Change], rows: _Rows) -> Change:
-    """Merge changes of columns to a change of all numbers, which may stand in any lines."""
-    after = rows.table.copy()
-    for _, column, _, new, _ in changes:
-        after[:, column : column + 3] = new
-    digits = max(digits for *_, digits in changes)
-    start = np.array([rows.begin])
-    return start, 0, rows.table.reshape(1, -1), after.reshape(1, -1), digits
 
 
 def read(path: Path) -> Document:
@@ -95,26 +76,25 @@ def _document(path: Path, content: bytes) -> Document:
     lines = lines_of(content, comments=True)
     letters, counts, begin = _header(path, lines)
     n, m = counts
-    words, line = _places(letters), lines[begin : begin + n]
-    if min(n, m) < 0 or 3 * n + m > int(lines.words[begin:].sum()):
-        left = len(lines) - begin
-        raise EndsEarlyError(f"it claims {n} vertices and {m} faces, in {left} lines")
+    rows = lines[begin:]
+    del lines
+    if min(n, m) < 0 or 3 * n + m > int(rows.words.sum()):
+        raise EndsEarlyError(f"it claims {n} vertices and {m} faces, in {len(rows)} lines")
     try:
-        rows, faces = _by_lines(
-            path, line, lines[begin + n : begin + n + m], counts, b"N" in letters
-        )
+        table, corners, sizes = _numbers(path, rows, counts, b"N" in letters)
     except (ValueError, MeshFileError):
-        found = _by_words(lines[begin:], counts, words)
+        found = _in_any_lines(rows, counts, letters)
         if found is None:
             raise
-        rows, faces = found
-    del lines, line
-    V = rows.table[:, :3].copy()
+        rows = found
+        table, corners, sizes = _numbers(path, rows, counts, b"N" in letters)
+    starts, has_colours = rows.starts[:n].copy(), bool((rows.words[n : n + m] > sizes + 1).any())
+    del rows
+    V = np.ascontiguousarray(table[:, :3])
     check_vertices(path, V)
-    corners, sizes, has_colours = faces
     part = Part("", V, triangles(corners, sizes, V))
     check_indices(path, part.faces, len(V))
-    rows.normals = _normals(letters, rows.table, part)
+    normals = _normals(letters, table, part)
     kinds = {
         "normals": b"N" in letters,
         "colours": b"C" in letters,
@@ -125,7 +105,16 @@ def _document(path: Path, content: bytes) -> Document:
     }
     contents = [name for name, is_there in kinds.items() if is_there]
     largest = int(sizes.max(initial=3))
-    return _Off(path, [part], contents, content=content, rows=rows, largest_face=largest)
+    return _Off(
+        path,
+        [part],
+        contents,
+        content=content,
+        starts=starts,
+        normals=normals,
+        directions=table[:, normals : normals + 3].copy() if normals else V[:0],
+        largest_face=largest,
+    )
 
 
 def _header(path: Path, lines: Lines) -> tuple[bytes, tuple[int, int], int]:
@@ -146,77 +135,38 @@ def _header(path: Path, lines: Lines) -> tuple[bytes, tuple[int, int], int]:
     return letters, (int(counts[0]), int(counts[1])), begin
 
 
-def _places(letters: bytes) -> list[int]:
-    """Return how many words a vertex may have."""
-    rest = 3 + 3 * (b"N" in letters) + 2 * (b"ST" in letters)
-    return [rest + colours for colours in ((4, 3) if b"C" in letters else (0,))]
-
-
-_Faces = tuple[Indices, Indices, bool]  # corners, sizes of faces, and whether these have colours
-
-
-def _by_lines(
-    path: Path, vertices: Lines, faces: Lines, counts: tuple[int, int], has_normals: bool
-) -> tuple[_Rows, _Faces]:
-    """Read one vertex and one face from each line."""
-    if (len(vertices), len(faces)) != counts:
-        left = len(vertices) + len(faces)
-        raise MayEndEarlyError(
-            f"it claims {counts[0]} vertices and {counts[1]} faces, in {left} lines"
-        )
-    if not counts[0]:
+def _numbers(
+    path: Path, rows: Lines, counts: tuple[int, int], has_normals: bool
+) -> tuple[Array, Indices, Indices]:
+    """Return the numbers of vertices, a row for each, and the corners and sizes of faces."""
+    (n, m), vertices = counts, rows[: counts[0]]
+    if len(rows) < n + m:
+        raise MayEndEarlyError(f"it claims {n} vertices and {m} faces, in {len(rows)} lines")
+    if not n:
         raise ValueError("it has no vertices")
     width = max(6, int(vertices.words.min())) if has_normals else 3
-    table = vertices.numbers(path, count=width)
+    table, faces = vertices.numbers(path, count=width), rows[n : n + m]
     _, ((sizes, corners),), bad, _ = faces.table([True])
     if bad >= 0:
         list(map(int, faces.words_of(bad)[: int(faces.words_of(bad)[0]) + 1]))  # names the word
         raise faces.fault(bad, f"face {bad} has fewer corners than it claims")
-    has_colours = bool((faces.words > sizes + 1).any())
-    rows = _Rows(table=table, starts=vertices.starts, begin=int(vertices.starts[0]))
-    return rows, (as_integers(corners), sizes, has_colours)
+    return table, as_integers(corners), sizes
 
 
-def _by_words(
-    lines: Lines, counts: tuple[int, int], widths: Sequence[int]
-) -> tuple[_Rows, _Faces] | None:
-    """Read vertices and faces whatever lines they stand in; None if that is not possible."""
-    total = int(lines.words.sum())
-    begin = int(lines.starts[0])
-    single = replace(
-        lines[:1], words=np.array([total], np.int32), kinds=np.zeros(1, np.uint8), text=lines.text
-    )
-    values, _, bad, _ = single.table([False] * total)
-    if bad >= 0:
-        return None
-    numbers = values[0]
-    ends = np.cumsum(lines.words, dtype=np.int64)
-    for width in widths:
-        for has_colours in (False, True):
-            faces = _faces_in(numbers, counts[0] * width, counts[1], ends if has_colours else None)
-            if faces is not None:
-                table = numbers[: counts[0] * width].reshape(-1, width)
-                return _Rows(table=table, starts=None, begin=begin), (*faces, has_colours)
+def _in_any_lines(rows: Lines, counts: tuple[int, int], letters: bytes) -> Lines | None:
+    """Return the rows of vertices and faces whatever lines they stand in, if that is possible."""
+    width = 3 + 3 * (b"N" in letters) + 2 * (b"ST" in letters)
+    layouts = [
+        [([False] * (width + of_vertex), counts[0]), ([True] + [False] * of_face, counts[1])]
+        for of_vertex in ((4, 3) if b"C" in letters else (0,))
+        for of_face in (0, 3, 4, 1)  # numbers of its colour
+    ]
+    for found in rows_in_any_lines(rows, int(rows.starts[0]), *layouts):
+        faces = found[counts[0] :]
+        has_colours = int(faces.table([True])[1][0][0].sum()) + len(faces) < int(faces.words.sum())
+        if not has_colours or np.isin(faces.starts[1:], rows.starts).all():  # each ends a line
+            return found
     return None
-
-
-def _faces_in(
-    numbers: Array, at: int, count: int, ends: Indices | None
-) -> tuple[Indices, Indices] | None:
-    """Read faces one after the other; with the `ends` of lines, each is followed by a colour."""
-    corners, sizes = list[Array](), list[int]()
-    for _ in range(count):
-        size = int(numbers[at]) if at < len(numbers) and numbers[at] >= 0 else -1
-        if size < 0 or size != numbers[at] or at + 1 + size > len(numbers):
-            return None
-        corners.append(numbers[at + 1 : at + 1 + size])
-        sizes.append(size)
-        at += 1 + size
-        if ends is not None:
-            at = int(ends[np.searchsorted(ends, at)])
-    if at != len(numbers):
-        return None
-    return as_integers(np.concatenate([numbers[:0], *corners])), np.array(sizes, np.int64)
 
 
 def _normals(letters: bytes, table: Array, part: Part) -> int | None:

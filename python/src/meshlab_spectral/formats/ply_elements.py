@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import io
 import re
-from collections.abc import Callable, Sequence
-from dataclasses import replace
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -14,13 +13,12 @@ from plyfile import PlyData, PlyElement, PlyListProperty
 from meshlab_spectral._core import binary_numbers
 from meshlab_spectral.formats.causes import EndsEarlyError, ForeignError, MayEndEarlyError
 from meshlab_spectral.formats.document import Indices
-from meshlab_spectral.formats.text import BYTE_ORDER_MARK, Lines, lines_of
+from meshlab_spectral.formats.text import BYTE_ORDER_MARK, Lines, lines_of, rows_in_any_lines
 
 _LARGEST_CUT = 1000  # largest ratio of what a file claims to hold to what it holds, as of STL
 # Elements, or properties: Gaussian splats have 62, with learned features some 1,000. The time of
 # plyfile grows with their square.
 _MOST_NAMES = 10_000
-_LONGEST_SIZE = 12  # characters of the size of a list, of at most 32 bits, and a blank
 Table = dict[str, Any]  # the numbers of a property; for lists their sizes, and all items
 
 
@@ -61,54 +59,11 @@ def read_elements(
     try:
         return _read_tables(content, ply, counts, start, lines)
     except ValueError:
-        if not ply.text or (rows := _rows_in_any_lines(lines, ply, counts, start)) is None:
+        elements = [(_are_lists(one), counts[one.name]) for one in ply]
+        rows = next(rows_in_any_lines(lines, start, elements), None) if ply.text else None
+        if rows is None:
             raise
         return _read_tables(content, ply, counts, start, rows)
-
-
-def _rows_in_any_lines(
-    lines: Lines, ply: PlyData, counts: dict[str, int], start: int
-) -> Lines | None:
-    """Return the rows of all elements by their words; None if any are missing or left over."""
-    text = np.frombuffer(lines.text, np.uint8)[start:]
-    is_blank = np.isin(text, np.frombuffer(b" \t\n\r\v\f", np.uint8))
-    found = start + np.flatnonzero(~is_blank & np.append(True, is_blank[:-1]))
-    del is_blank
-    first, words, at = list[Indices](), list[Indices](), 0
-    try:
-        for element in ply:
-            are_lists = [isinstance(one, PlyListProperty) for one in element.properties]
-            count = counts[element.name]
-            if not any(are_lists):
-                sizes = np.full(count, len(are_lists))
-            else:
-                rows = _sizes_of_rows(lines.text, found, at, are_lists, count)
-                sizes = np.array(rows, np.int64)
-            first.append(found[at + np.cumsum(sizes) - sizes])
-            words.append(sizes.astype(np.int32))
-            at += int(sizes.sum())
-    except (ValueError, IndexError):
-        return None
-    if at != len(found):
-        return None
-    kinds = np.zeros(sum(map(len, words)), np.uint8)
-    return replace(lines, starts=np.concatenate(first), words=np.concatenate(words), kinds=kinds)
-
-
-def _sizes_of_rows(
-    text: bytes, found: Indices, at: int, are_lists: Sequence[bool], count: int
-) -> list[int]:
-    """Return how many words each of an element's rows has, the first of which is word `at`."""
-    sizes = list[int]()
-    for _ in range(count):
-        begin = at
-        for is_list in are_lists:
-            if is_list:
-                start = int(found[at])
-                at += max(0, int(text[start : start + _LONGEST_SIZE].split(maxsplit=1)[0]))
-            at += 1
-        sizes.append(at - begin)
-    return sizes
 
 
 def _read_tables(
@@ -123,8 +78,7 @@ def _read_tables(
         if element.name == "vertex":
             starts, begin = own.starts, start
         if ply.text:
-            are_lists = [isinstance(one, PlyListProperty) for one in properties]
-            found, at = own.table(are_lists, is_whole=True), at + count
+            found, at = own.table(_are_lists(element), is_whole=True), at + count
         else:
             types = [(getattr(one, "len_dtype", ""), one.val_dtype) for one in properties]
             is_big = ply.byte_order == ">"
@@ -146,6 +100,10 @@ def _read_tables(
             for one in properties
         }
     return tables, starts, begin
+
+
+def _are_lists(element: PlyElement) -> list[bool]:
+    return [isinstance(one, PlyListProperty) for one in element.properties]
 
 
 def row_type(element: PlyElement, order: str, size_of: Callable[[Any], int]) -> np.dtype[Any]:

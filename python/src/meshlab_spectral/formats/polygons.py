@@ -16,25 +16,12 @@ _MOST_CORNERS = 30_000
 
 
 def triangles(corners: Indices, sizes: NDArray[np.integer], vertices: Array) -> Indices:
-    """Split polygons into triangles, in order.
+    """Split polygons into triangles, m x 3 vertex indices, in order.
 
     A polygon becomes a fan around its first corner, as in MeshLab. Where that would fold it, as it
     may a concave one, ears are cut off it. A polygon with fewer than three corners is dropped.
-
-    Parameters
-    ----------
-    corners
-        Vertex indices of all polygons, one after the other.
-    sizes
-        Number of corners of each polygon.
-    vertices
-        n x 3.
-
-    Returns
-    -------
-    m x 3 vertex indices.
-
-    Raises ValueError for a polygon that would fold, of more than 30,000 corners.
+    `corners` are the vertex indices of all polygons, one after the other, `sizes` how many each
+    has. Raises ValueError for a polygon that would fold, of more than 30,000 corners.
     """
     if (sizes == 3).all():
         return corners.reshape(-1, 3)

@@ -28,31 +28,19 @@ class MeshRows(ABC):
 
     In a PLY file the points are the vertices, in an STL file the corners of all facets: those at
     one position are one vertex.
-
-    Attributes
-    ----------
-    path
-        The file.
-    points, faces
-        How many there are.
-    block, begin
-        The rows that hold the points, and their byte offset.
-    kinds
-        What `columns` has: "positions", "normals", "quality".
-    flags
-        Whether points, and faces, may be selected.
-    is_single
-        Whether coordinates are single precision.
     """
 
-    path: Path
+    path: Path  # the file
+    # How many points and faces there are.
     points: int
     faces: int
+    # The rows that hold the points, and their byte offset.
     block: Rows
     begin: int
+    # What `columns` has: "positions", "normals", "quality".
     kinds: frozenset[str] = frozenset({"positions"})
-    flags: tuple[bool, bool] = (False, False)
-    is_single: bool = True
+    flags: tuple[bool, bool] = (False, False)  # whether points, and faces, may be selected
+    is_single: bool = True  # whether coordinates are single precision
     is_joined_by_position: ClassVar[bool] = False
 
     @property

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 import sys
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import IO, Any
@@ -21,6 +21,10 @@ from meshlab_spectral.formats.document import Array, Indices
 Change = tuple[Indices, int, Array, Array, int]
 BYTE_ORDER_MARK = b"\xef\xbb\xbf"  # of UTF-8; some editors put it before a text
 _END = re.compile(rb"[\r\n]")
+_COMMENT = re.compile(rb"#[^\r\n]*")
+_LONGEST_SIZE = 12  # characters of the size of a list, of at most 32 bits, and a blank
+# Elements: which of their numbers are lists, behind their sizes, and how many rows there are.
+Layout = Sequence[tuple[Sequence[bool], int]]
 NumberList = tuple[Indices, Array]  # the sizes of a list in each line, and all items
 
 
@@ -121,6 +125,53 @@ def lines_of(
         begin = len(BYTE_ORDER_MARK)
     found = _core.text_lines(text, begin, limit, keywords, comments, any_case, continued)
     return Lines(text, *found, comments, continued)
+
+
+def rows_in_any_lines(lines: Lines, start: int, *layouts: Layout) -> Iterator[Lines]:
+    """Yield the rows of a text by their words from a byte offset on, whatever lines they are in.
+
+    Of each layout that fits all words.
+    """
+    text = lines.text
+    if lines.comments:
+        text = _COMMENT.sub(lambda comment: b" " * len(comment[0]), text)
+    bytes_ = np.frombuffer(text, np.uint8)[start:]
+    is_blank = np.isin(bytes_, np.frombuffer(b" \t\n\r\v\f", np.uint8))
+    found = start + np.flatnonzero(~is_blank & np.append(True, is_blank[:-1]))
+    del is_blank, bytes_
+    for layout in layouts:
+        first, words, at = list[Indices](), list[Indices](), 0
+        try:
+            for are_lists, count in layout:
+                if any(are_lists):
+                    sizes = np.array(_sizes_of_rows(text, found, at, are_lists, count), np.int64)
+                else:
+                    sizes = np.full(count, len(are_lists))
+                first.append(found[at + np.cumsum(sizes) - sizes])
+                words.append(sizes)
+                at += int(sizes.sum())
+        except (ValueError, IndexError):
+            continue
+        if at == len(found):
+            all_words = np.concatenate(words).astype(np.int32)
+            kinds = np.zeros(len(all_words), np.uint8)
+            yield replace(lines, starts=np.concatenate(first), words=all_words, kinds=kinds)
+
+
+def _sizes_of_rows(
+    text: bytes, found: Indices, at: int, are_lists: Sequence[bool], count: int
+) -> list[int]:
+    """Return how many words each of an element's rows has, the first of which is word `at`."""
+    sizes = list[int]()
+    for _ in range(count):
+        begin = at
+        for is_list in are_lists:
+            if is_list:
+                start = int(found[at])
+                at += max(0, int(text[start : start + _LONGEST_SIZE].split(maxsplit=1)[0]))
+            at += 1
+        sizes.append(at - begin)
+    return sizes
 
 
 def numbers_from(text: bytes, begin: int, count: int, what: str) -> Array:

@@ -22,24 +22,13 @@ _VERSION_SECONDS = 20
 
 @dataclass(frozen=True)
 class Host:
-    """One of the two builds of MeshLab 2025.07; each loads only plugins of its own precision.
+    """One of the two builds of MeshLab 2025.07; each loads only plugins of its own precision."""
 
-    Attributes
-    ----------
-    precision
-        Precision of its coordinates, "single" or "double". The plugin computes in double for both.
-    version
-        Version that MeshLab reports.
-    application
-        Qt application name, which also names MeshLab's data folder.
-    plugin
-        Base name of the plugin's library, without platform prefix and extension.
-    """
-
+    # Precision of its coordinates, "single" or "double". The plugin computes in double for both.
     precision: str
-    version: str
-    application: str
-    plugin: str
+    version: str  # version that MeshLab reports
+    application: str  # Qt application name, which also names MeshLab's data folder
+    plugin: str  # base name of the plugin's library, without platform prefix and extension
 
 
 SINGLE = Host("single", "2025.07", "MeshLab_64bit_fp", "filter_spectral_float")
@@ -49,40 +38,20 @@ HOSTS = (SINGLE, DOUBLE)
 
 @dataclass(frozen=True)
 class Change:
-    """A change to one file, made or, in a dry run, only planned.
+    """A change to one file, made or, in a dry run, only planned."""
 
-    Attributes
-    ----------
-    host
-        The MeshLab that loads the file.
-    path
-        The file.
-    done
-        "installed", "replaced", "up to date", "removed" or "not there".
-    """
-
-    host: Host
-    path: Path
-    done: str
+    host: Host  # the MeshLab that loads the file
+    path: Path  # the file
+    done: str  # "installed", "replaced", "up to date", "removed" or "not there"
 
 
 @dataclass(frozen=True)
 class FoundMeshLab:
-    """A MeshLab on this machine.
+    """A MeshLab on this machine."""
 
-    Attributes
-    ----------
-    program
-        Its executable.
-    version
-        Version it reports; None if it reports none.
-    host
-        Its build; None if it is not MeshLab 2025.07.
-    """
-
-    program: Path
-    version: str | None
-    host: Host | None
+    program: Path  # its executable
+    version: str | None  # version it reports; None if it reports none
+    host: Host | None  # its build; None if it is not MeshLab 2025.07
 
 
 def extra_plugins_folder(

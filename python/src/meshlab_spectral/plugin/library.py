@@ -23,9 +23,7 @@ def last_warnings() -> list[Warned]:
     Raises PluginError when pymeshlab has loaded another copy of the plugin than `load` would, or
     the plugin is older than this package.
     """
-    function = function_of(loaded_plugin(), "meshlab_spectral_warnings", ())
-    text: bytes = function()
-    return [Warned(*line.split(" ", 1)) for line in text.decode().splitlines()]
+    return [Warned(*line.split(" ", 1)) for line in _last("warnings").splitlines()]
 
 
 def last_summary() -> str:
@@ -33,8 +31,7 @@ def last_summary() -> str:
 
     Empty if the numbers of the report say it all. Errors are those of `last_warnings`.
     """
-    text: bytes = function_of(loaded_plugin(), "meshlab_spectral_summary", ())()
-    return text.decode()
+    return _last("summary")
 
 
 def last_error() -> tuple[str, str, int] | None:
@@ -42,11 +39,13 @@ def last_error() -> tuple[str, str, int] | None:
 
     A second call returns None. Errors are those of `last_warnings`.
     """
-    text: bytes = function_of(loaded_plugin(), "meshlab_spectral_error", ())()
-    if not text:
-        return None
-    kind, code, limit = text.decode().split()
-    return kind, code, int(limit)
+    words = _last("error").split()
+    return (words[0], words[1], int(words[2])) if words else None
+
+
+def _last(what: str) -> str:
+    text: bytes = function_of(loaded_plugin(), f"meshlab_spectral_{what}", ())()
+    return text.decode()
 
 
 @functools.cache

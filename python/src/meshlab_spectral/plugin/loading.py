@@ -4,6 +4,7 @@ import os
 import sys
 from pathlib import Path
 
+from meshlab_spectral import _core
 from meshlab_spectral.errors import PluginError
 from meshlab_spectral.plugin.failed_calls import kept_when_failed
 from meshlab_spectral.plugin.handle import let_signals_interrupt
@@ -11,17 +12,7 @@ from meshlab_spectral.plugin.handle import let_signals_interrupt
 FILTER_NAME = "apply_coord_spectral_filter_fractional"
 DENOISE_NAME = "apply_coord_spectral_denoise"
 # The plugin's filters: name in MeshLab's menus and scripts -> Python name.
-FILTERS = {
-    "Spectral Filter (Fractional)": FILTER_NAME,
-    "Spectral Denoise": DENOISE_NAME,
-    "Spectral Equalizer": "apply_coord_spectral_equalizer",
-    "Spectral Filter: Vertex Quality": "apply_scalar_spectral_filter_per_vertex",
-    "Spectral Filter: Vertex Color": "apply_color_spectral_filter_per_vertex",
-    "Spectral Artefacts": "compute_scalar_spectral_artefacts_per_vertex",
-    "Manifold Harmonics": "compute_scalar_manifold_harmonic_per_vertex",
-    "Geometry Spectrum": "get_geometry_spectrum",
-    "Surface Texture": "compute_scalar_surface_texture_per_vertex",
-}
+FILTERS = {one["name"]: one["python_name"] for one in _core.filters()}
 PLUGIN_VARIABLE = "MESHLAB_SPECTRAL_PLUGIN"
 PYMESHLAB_VERSION = "2025.7.post1"
 

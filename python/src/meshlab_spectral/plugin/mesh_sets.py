@@ -12,10 +12,9 @@ from numpy.typing import NDArray
 
 from meshlab_spectral import errors
 from meshlab_spectral.errors import FilterError
-from meshlab_spectral.plugin.failed_calls import is_interrupt, keep_failed
+from meshlab_spectral.plugin.failed_calls import corrected, is_interrupt, keep_failed
 from meshlab_spectral.plugin.library import function_of, last_error, last_summary, last_warnings
 from meshlab_spectral.plugin.loading import load, loaded_plugin
-from meshlab_spectral.plugin.pymeshlab_texts import corrected
 from meshlab_spectral.warned import with_warnings
 
 Array = NDArray[np.float64]
@@ -88,29 +87,14 @@ def write(
 def call_filter(mesh_set: Any, name: str, parameters: dict[str, Any]) -> dict[str, Any]:
     """Apply a filter of the plugin to the current mesh of a MeshSet, as a script does.
 
-    Parameters
-    ----------
-    mesh_set
-        A `pymeshlab.MeshSet`.
-    name
-        The filter's Python name; the plugin must be loaded.
-    parameters
-        Keyword arguments for pymeshlab.
+    The plugin must be loaded; `name` is the filter's in Python, `parameters` are keyword arguments
+    for pymeshlab. Returns pymeshlab's report; in addition, in the plugin's words, "warnings", a
+    list of problems that were not errors, and "summary", what a filter that chooses by itself found
+    and did.
 
-    Returns
-    -------
-    dict
-        pymeshlab's report; in addition, in the plugin's words, "warnings", a list of problems that
-        were not errors, and "summary", what a filter that chooses by itself found and did.
-
-    Raises
-    ------
-    FilterError
-        When the filter rejects the mesh or the parameters; says what is wrong and what to do.
-    KeyboardInterrupt
-        On Ctrl-C, within 0.3 s; the mesh is unchanged.
-    PluginError
-        When the plugin's warnings are not available, see `last_warnings`.
+    Raises FilterError when the filter rejects the mesh or the parameters; KeyboardInterrupt on
+    Ctrl-C, within 0.3 s, the mesh unchanged; PluginError when the warnings are not available, see
+    `last_warnings`.
     """
     import pymeshlab
 

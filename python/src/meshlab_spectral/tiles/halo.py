@@ -90,17 +90,8 @@ def kernel_tails(gains: Array) -> Array:
     Beyond a straight border the surface is mirrored instead of going on. Coordinates grow no faster
     than distances, so those there are wrong by at most twice the distance from the border. K(x) is
     the integral beyond x of the filter's kernel across the border, the cosine transform of the
-    gain; partial integration gives the bound.
-
-    Parameters
-    ----------
-    gains
-        At relative frequencies 0 to _HIGHEST, evenly spaced.
-
-    Returns
-    -------
-    array
-        In feature sizes, for h = 0, 1, ... times 1 / (2 * _HIGHEST).
+    gain; partial integration gives the bound. `gains` are at relative frequencies 0 to _HIGHEST,
+    evenly spaced; the result is in feature sizes, for h = 0, 1, ... times 1 / (2 * _HIGHEST).
     """
     x = np.linspace(0.0, _HIGHEST, len(gains))
     # A constant gain has no kernel beyond the vertex itself.

@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, cast
 
 from meshlab_spectral.errors import Cancelled, InputError
+from meshlab_spectral.files.request import Request
 from meshlab_spectral.filters.keywords import takes_options
 from meshlab_spectral.filters.option_types import Options
 from meshlab_spectral.filters.options import (
@@ -126,6 +127,5 @@ def _filtered(
             if on_progress is not None and on_progress(stage, fraction or 0.0) is False:
                 raise Cancelled(f"stopped: {target} was not written")
 
-        return whole_or_tiles.filter_file(
-            read, written, options, update, mesh, overwrite, tiles=0, tell=lambda _: None
-        )
+        request = Request(read, options, mesh)
+        return whole_or_tiles.filter_file(request, written, update, overwrite, 0, lambda _: None)

@@ -23,34 +23,21 @@ _PLAN, _SCATTERED = "plan.json", "scattered"
 
 @dataclass(frozen=True)
 class Plan:
-    """What all tiles have in common.
+    """What all tiles have in common."""
 
-    Attributes
-    ----------
-    source, stamp
-        The input, and its size and time of change.
-    filter, options
-        The name of its table, and its options, as from `as_dict`.
-    lengths
-        Of the whole mesh: diagonal, mean edge, and diagonal of the surface.
-    has_selection
-        Whether only what is selected moves.
-    tree, tiles, reach
-        The cells, how many there are, and how far each tile goes beyond its cell.
-    versions
-        What the result depends on.
-    """
-
+    # The input, and its size and time of change.
     source: str
     stamp: list[int]
+    # The name of the filter's table, and its options, as from `as_dict`.
     filter: str
     options: dict[str, Any]
-    lengths: list[float]
-    has_selection: bool
+    lengths: list[float]  # of the whole mesh: diagonal, mean edge, and diagonal of the surface
+    has_selection: bool  # whether only what is selected moves
+    # The cells, how many there are, and how far each tile goes beyond its cell.
     tree: Tree
     tiles: int
     reach: float
-    versions: dict[str, str]
+    versions: dict[str, str]  # what the result depends on
 
     def options_of_filter(self) -> Options:
         """Return the options of the filter."""

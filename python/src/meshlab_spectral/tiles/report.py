@@ -24,7 +24,7 @@ _ALIKE = ("feature_size", "cutoff_frequency")
 _NOISE = ("noise_height", "noise_size", "mean_edge")
 
 
-def _mean(name: str, reports: list[dict[str, Any]]) -> float:
+def mean_share(name: str, reports: list[dict[str, Any]]) -> float:
     """Return the mean of a share over the tiles, by the areas that are their own."""
     area = math.fsum(one["own_area_before"] for one in reports)
     sums = math.fsum(one.get(name, 0.0) * one["own_area_before"] for one in reports)
@@ -34,22 +34,11 @@ def _mean(name: str, reports: list[dict[str, Any]]) -> float:
 def combined(
     filter_name: str, reports: list[dict[str, Any]]
 ) -> tuple[dict[str, Any], tuple[float, float, float]]:
-    """Combine the reports of all tiles.
+    """Combine the reports of all tiles of a filter, named as its table.
 
-    Parameters
-    ----------
-    filter_name
-        Of its table.
-    reports
-        Of the tiles.
-
-    Returns
-    -------
-    report
-        Of the surface; it lacks what only the whole could tell, such as its components.
-    precision
-        Root mean squares of the rounding to single precision and of the displacement, over the
-        vertices that move, and the largest coordinate.
+    Returns the report of the surface, which lacks what only the whole could tell, such as its
+    components; and root mean squares of the rounding to single precision and of the displacement,
+    over the vertices that move, and the largest coordinate.
     """
     ran = [one for one in reports if one["ran"]]
 
@@ -67,13 +56,13 @@ def combined(
         report = {name: ran[0][name] if ran else 0.0 for name in _ALIKE}
         report |= {name: max((one[name] for one in ran), default=0) for name in _LARGEST}
         report["accuracy_reached"] = all(one["accuracy_reached"] for one in ran)
-        report["singular_part"] = singular_part(reports)
+        report["singular_part"] = mean_share("singular_part", reports)
     report |= {
         "area_before": area,
         "area_after": total("own_area_after"),
         "max_displacement": max(one["largest"] for one in reports),
         "rms_displacement": math.sqrt(total("squares") / area) if area else 0.0,
-        "limited_share": _mean("limited_share", reports),
+        "limited_share": mean_share("limited_share", reports),
     }
     precision = (
         math.sqrt(total("rounding_squares") / moved),
@@ -81,13 +70,6 @@ def combined(
         max(one["largest_coordinate"] for one in reports),
     )
     return with_warnings(report, _warnings(ran)), precision
-
-
-def singular_part(reports: list[dict[str, Any]]) -> float:
-    """Return the share of the surface on which the tolerance of automatic steps is not reached."""
-    area = math.fsum(one["own_area_before"] for one in reports)
-    parts = math.fsum(one.get("singular_part", 0) * one["own_area_before"] for one in reports)
-    return parts / area if area else 0.0
 
 
 def _warnings(reports: list[dict[str, Any]]) -> list[Warned]:

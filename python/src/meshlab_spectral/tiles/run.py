@@ -26,12 +26,11 @@ from meshlab_spectral.plugin.limits import memory_remedy
 from meshlab_spectral.plugin.versions import versions
 from meshlab_spectral.tiles import MOST_TILES
 from meshlab_spectral.tiles.cells import near_cells, split
-from meshlab_spectral.tiles.gather import gather
+from meshlab_spectral.tiles.exchange import gather, scatter
 from meshlab_spectral.tiles.halo import reach_of, require_local
 from meshlab_spectral.tiles.noise import given_noise, measured_noise
 from meshlab_spectral.tiles.plan import Plan, Workspace
-from meshlab_spectral.tiles.report import combined, singular_part
-from meshlab_spectral.tiles.scatter import scatter
+from meshlab_spectral.tiles.report import combined, mean_share
 from meshlab_spectral.tiles.survey import Survey, survey
 from meshlab_spectral.tiles.tile_jobs import TileJob, check_seen, run_tile
 from meshlab_spectral.warned import Warned, warned, with_warnings
@@ -288,7 +287,8 @@ def _filtered(
             if not decided["has_thin_parts"] and _has_thin_parts(reports):
                 decided["has_thin_parts"] = True  # else what must stay would ask for more passes
                 reports = do_asked(decided)
-            if singular_part(reports) <= _NEGLIGIBLE:
+            # The share of the surface on which the tolerance is not reached.
+            if mean_share("singular_part", reports) <= _NEGLIGIBLE:
                 break
     reports = do(every, decided)
     if not decided["has_thin_parts"] and _has_thin_parts(reports):

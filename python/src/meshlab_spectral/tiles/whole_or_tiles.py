@@ -4,16 +4,14 @@ from __future__ import annotations
 
 import contextlib
 from collections.abc import Callable
-from functools import partial
 from pathlib import Path
 from typing import Any
 
 from meshlab_spectral.errors import MemoryLimitError, MeshFileError, OptionError, UntiledError
 from meshlab_spectral.extras import check_extras
-from meshlab_spectral.files.region import Region
+from meshlab_spectral.files.request import Request
 from meshlab_spectral.files.sources import check_source
 from meshlab_spectral.files.whole_files import check_target
-from meshlab_spectral.filters.option_types import Options
 from meshlab_spectral.workers.process import NO_LIMITS, JobLimits, ProgressCallback
 from meshlab_spectral.workers.single_file import measure_in_child, write_in_child
 
@@ -25,108 +23,86 @@ _SURELY, _USUALLY, _MOST = 1000, 1500, 2000
 
 
 def filter_file(
-    source: Path,
+    request: Request,
     target: Path,
-    options: Options,
     on_progress: ProgressCallback,
-    mesh: str | None,
     overwrite: bool,
     tiles: int | None,
     tell: Callable[[str], None],
-    region: Region | None = None,
     scheduler: str | None = None,
 ) -> dict[str, Any]:
     """Filter a file as `write_in_child` does; in tiles where that is refused for lack of memory.
 
-    Parameters
-    ----------
-    source, target, options, on_progress, mesh, overwrite, region
-        As for `write_in_child`.
-    tiles
-        How many; 0 for as many as it takes, if it takes any; None for none.
-    tell
-        Called with a line that says why there are tiles.
-    scheduler
-        Of a Dask cluster that filters in tiles, whether or not the whole fits in memory.
-
-    Raises
-    ------
-    SpectralError
-        As from `write_in_child`; UntiledError when a number of tiles is given for what cannot be
-        divided.
+    `tiles` is how many; 0 for as many as it takes, if it takes any; None for none. `tell` is called
+    with a line that says why there are tiles. With a Dask `scheduler`, its cluster filters in
+    tiles, whether or not the whole fits in memory. Raises SpectralError as `write_in_child` does;
+    UntiledError when a number of tiles is given for what cannot be divided.
     """
-    tiles = _tiles_for(tiles, region, mesh, scheduler)
+    tiles = _tiles_for(request, tiles, scheduler)
     if tiles is None:
-        return write_in_child(source, target, options, on_progress, mesh, overwrite, region=region)
+        return write_in_child(request, target, on_progress, overwrite)
+
+    def in_tiles(number: int) -> dict[str, Any]:
+        from meshlab_spectral.tiles.run import filter_in_tiles  # a slow import
+
+        assert request.options is not None
+        what = request.source, target, request.options
+        return filter_in_tiles(*what, on_progress, number, tell, overwrite, scheduler)
+
     if tiles > 0 or scheduler is not None:
-        from meshlab_spectral.tiles.run import filter_in_tiles
-
-        run = partial(filter_in_tiles, source, target, options, on_progress, tiles, tell)
-        return run(overwrite, scheduler)
+        return in_tiles(tiles)
     try:
-        limits = _limits(source)
-        return write_in_child(source, target, options, on_progress, mesh, overwrite, limits)
+        return write_in_child(request, target, on_progress, overwrite, _limits(request.source))
     except MemoryLimitError as refusal:
-        from meshlab_spectral.tiles.run import filter_in_tiles
-
         try:
-            return filter_in_tiles(source, target, options, on_progress, 0, tell, overwrite)
+            return in_tiles(0)
         except UntiledError as error:
             raise MemoryLimitError(f"{refusal}; nor can it be filtered in tiles: {error}") from None
 
 
 def intent_of_file(
-    source: Path,
+    request: Request,
     target: Path,
-    options: Options,
     on_progress: ProgressCallback,
-    mesh: str | None,
     tiles: int | None,
-    region: Region | None = None,
     scheduler: str | None = None,
 ) -> dict[str, Any]:
     """Say what `filter_file` would do, and write nothing.
 
-    Returns
-    -------
-    dict
-        As from `files.intent_of`; "tiles", their number, 0 for none; "memory", about what the
-        whole takes, and "available_memory", bytes.
-
-    Raises
-    ------
-    SpectralError
-        As from `filter_file`, as far as can be told from the file and the options.
+    Returns what `files.intent_of` does, and "tiles", their number, 0 for none; "memory", about what
+    the whole takes, and "available_memory", bytes. Raises SpectralError as `filter_file` does, as
+    far as can be told from the file and the options.
     """
-    check_source(source)
+    check_source(request.source)
     check_target(target)
-    tiles = _tiles_for(tiles, region, mesh, scheduler)
+    tiles = _tiles_for(request, tiles, scheduler)
     if tiles == 0 and scheduler is None:
         with contextlib.suppress(MemoryLimitError):
-            _limits(source)
+            _limits(request.source)
             tiles = None
     if tiles is None:
-        more = {"target": str(target.absolute()), "region": region.given() if region else None}
-        intent = {**measure_in_child(source, options, on_progress, mesh, more), "tiles": 0}
+        more = {"target": str(target.absolute())}
+        intent = {**measure_in_child(request, on_progress, more), "tiles": 0}
     else:
         from meshlab_spectral.tiles.run import intent_in_tiles
 
-        intent = intent_in_tiles(source, target, options, on_progress, tiles, scheduler)
+        assert request.options is not None
+        what = request.source, target, request.options
+        intent = intent_in_tiles(*what, on_progress, tiles, scheduler)
     from meshlab_spectral.workers.memory import available_memory
 
     vertices = sum(one["vertices"] for one in intent["surfaces"])
     return {**intent, "memory": _USUALLY * vertices, "available_memory": available_memory()}
 
 
-def _tiles_for(
-    tiles: int | None, region: Region | None, mesh: str | None, scheduler: str | None
-) -> int | None:
+def _tiles_for(request: Request, tiles: int | None, scheduler: str | None) -> int | None:
     """Return the number of tiles, 0 for as many as it takes, None where there are none.
 
     Raises UntiledError when a number, or a scheduler, is given for what cannot be divided.
     """
     asking = "tiles" if tiles else "the scheduler"
-    parts = [*(region.given() if region is not None else ()), *(["mesh"] if mesh else [])]
+    parts = [*(request.region.given() if request.region is not None else ())]
+    parts += ["mesh"] if request.mesh else []
     if parts and (tiles or scheduler is not None):
         names = ", ".join(parts)
         raise UntiledError(f"only the whole is filtered in tiles: leave out {names}, or {asking}")

@@ -5,13 +5,12 @@ The calling command can thus be interrupted, show progress, and report even a cr
 
 from __future__ import annotations
 
-import contextlib
+import pickle
 import tempfile
-from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from meshlab_spectral.files.region import Region
+from meshlab_spectral.files.request import Request
 from meshlab_spectral.files.sources import check_is_place, check_source
 from meshlab_spectral.files.whole_files import (
     remove_leftovers,
@@ -19,8 +18,6 @@ from meshlab_spectral.files.whole_files import (
     temporary_folder,
     writing_whole,
 )
-from meshlab_spectral.filters.option_types import Options
-from meshlab_spectral.filters.options import TextureOptions
 from meshlab_spectral.workers.process import NO_LIMITS, JobLimits, ProgressCallback, process_for_job
 
 if TYPE_CHECKING:
@@ -29,40 +26,32 @@ if TYPE_CHECKING:
 
 
 def write_in_child(
-    source: Path,
+    request: Request,
     target: Path,
-    options: Options,
     on_progress: ProgressCallback,
-    mesh: str | None = None,
     overwrite: bool = True,
     limits: JobLimits = NO_LIMITS,
-    region: Region | None = None,
 ) -> dict[str, Any]:
     """Filter a mesh file into another, or write its harmonics to an archive, in a child process.
 
-    The file is written atomically, and replaces an existing one if it may. `options` are those for
-    `meshes.filter_to_scratch` or `basis.basis_to_scratch`, `on_progress` is that of
-    `MeshLabProcess.run`, as are `limits`; without the name of a `mesh`, all meshes of the file are
-    filtered, or of them only a `region`. Returns the filter's report; for harmonics, the numbers
-    of "vertices" and "harmonics".
+    The file is written atomically, and replaces an existing one if it may. `on_progress` and
+    `limits` are those of `MeshLabProcess.run`. Returns the filter's report; for harmonics, the
+    numbers of "vertices" and "harmonics".
 
-    Raises SpectralError when `source` cannot be read, `target` cannot be written, the filter
+    Raises SpectralError when the source cannot be read, `target` cannot be written, the filter
     rejects the mesh or an option, or the child died without an answer. KeyboardInterrupt passes
     after the child has been ended and the scratch files removed.
     """
-    check_source(source)
+    check_source(request.source)
     check_is_place(target)
     remove_leftovers(resolved(target).parent, target.name)
     with writing_whole(target, overwrite) as scratch:
-        place = {"scratch": str(scratch.absolute()), "region": region.given() if region else None}
-        return measure_in_child(source, options, on_progress, mesh, place, limits)
+        return measure_in_child(request, on_progress, {"scratch": str(scratch.absolute())}, limits)
 
 
 def measure_in_child(
-    source: Path,
-    options: Options | None,
+    request: Request,
     on_progress: ProgressCallback,
-    mesh: str | None = None,
     more: dict[str, Any] | None = None,
     limits: JobLimits = NO_LIMITS,
 ) -> dict[str, Any]:
@@ -70,11 +59,9 @@ def measure_in_child(
 
     Parameters and errors are those of `write_in_child`; `more` extends the child's job.
     """
-    check_source(source)
-    task = {"task": options.TABLE, "options": options.as_dict()} if options else {"task": "info"}
-    job = {**task, "source": str(source.absolute()), "mesh": mesh, **(more or {})}
+    check_source(request.source)
     with process_for_job() as process:
-        return process.run(job, on_progress, limits).report
+        return process.run({**request.as_job(), **(more or {})}, on_progress, limits).report
 
 
 def compare_in_child(
@@ -91,48 +78,24 @@ def compare_in_child(
     check_source(a)
     check_source(b)
     job = {"task": "compare", "source": str(a.absolute()), "other": str(b.absolute())}
-    more = {"max_distance": max_distance}
-    with _archive(whole) as archive, process_for_job() as process:
-        report = process.run(
-            {**job, **more, "archive": archive and str(archive)}, on_progress
-        ).report
-        from meshlab_spectral.files.comparison import Comparison  # a slow import
-
-        return Comparison.from_report(report, archive)
+    more = {"max_distance": max_distance, "whole": whole}
+    found: Comparison = _result_of({**job, **more}, on_progress)
+    return found
 
 
 def texture_in_child(
-    source: Path,
-    options: TextureOptions,
-    on_progress: ProgressCallback,
-    mesh: str | None,
-    whole: bool,
-    region: Region,
+    request: Request, on_progress: ProgressCallback
 ) -> tuple[Any, Any, SurfaceTexture]:
-    """Measure the texture of a mesh file in a child process, as `texture_of` does.
-
-    Returns vertices and faces, too; they and the heights of the vertices are left out unless the
-    `whole` is asked for.
-    """
-    with _archive(whole) as archive:
-        more = {"archive": archive and str(archive), "region": region.given()}
-        report = measure_in_child(source, options, on_progress, mesh, more)
-        import numpy as np  # a slow import, as is what needs it
-
-        from meshlab_spectral.filters.texture import SurfaceTexture
-
-        if archive is None:
-            return None, None, SurfaceTexture.from_report(report, np.zeros(0))
-        with np.load(archive) as saved:
-            texture = SurfaceTexture.from_report(report, saved["height"])
-            return saved["vertices"], saved["faces"], texture
+    """Measure the texture of a mesh file in a child process, as `texture_of` does."""
+    check_source(request.source)
+    found: tuple[Any, Any, SurfaceTexture] = _result_of(request.as_job(), on_progress)
+    return found
 
 
-@contextlib.contextmanager
-def _archive(wanted: bool) -> Iterator[Path | None]:
-    """Yield the name of a temporary file for arrays from the child, if it is wanted."""
-    if not wanted:
-        yield None
-        return
+def _result_of(job: dict[str, Any], on_progress: ProgressCallback) -> Any:
+    """Do a job in a child process; return its result, which comes in a file for its arrays."""
     with temporary_folder(Path(tempfile.gettempdir())) as folder:
-        yield folder / "arrays.npz"
+        result = folder / "result"
+        with process_for_job() as process:
+            process.run({**job, "result": str(result)}, on_progress)
+        return pickle.loads(result.read_bytes())

@@ -1,0 +1,189 @@
+"""Measurements of mesh files: description, harmonics, roughness, spectrum."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from meshlab_spectral import _core
+from meshlab_spectral.errors import MeshError, MeshFileError
+from meshlab_spectral.files.meshes import StageCallback, in_scene, load_arrays, load_parts
+from meshlab_spectral.files.meshlab_files import read_with_meshlab
+from meshlab_spectral.files.region_vertices import restricted
+from meshlab_spectral.files.request import Request
+from meshlab_spectral.files.touching import least_linked
+from meshlab_spectral.filters.harmonics import compute
+from meshlab_spectral.filters.options import BasisOptions, SpectrumOptions, TextureOptions
+from meshlab_spectral.filters.running import plain, run
+from meshlab_spectral.filters.spectrum import measure
+from meshlab_spectral.filters.texture import SurfaceTexture, surface_texture
+from meshlab_spectral.formats.document import Array, Part, joined
+from meshlab_spectral.plugin.loading import DENOISE_NAME, load
+from meshlab_spectral.warned import Warned, warned, with_warnings
+
+_OF_SURFACE = ("components", "joined_vertices", "unreferenced_vertices")
+_OF_NOISE = (
+    "noise_kind",
+    "noise_height",
+    "noise_size",
+    "noise_share",
+    "noise_searched",
+    "spikes",
+    "voxel_size",
+)
+_LENGTHS = ("diagonal", "mean_edge", "area", "default_feature_size")
+
+
+def mesh_info(source: Path, on_stage: StageCallback, mesh: str | None = None) -> dict[str, Any]:
+    """Describe a mesh file; several meshes are described together.
+
+    Parameters and errors are those of `load_parts`; also FilterError when the mesh has no faces, no
+    area or non-finite coordinates. `on_stage` is called with "reading", "measuring" and "looking
+    for noise" as these begin, and with their progress.
+
+    Returns "meshes", their names; the numbers of "vertices", "faces", "components", "rims"
+    (boundary loops), "joined_vertices" (at seams) and "unreferenced_vertices", and, in a PLY file,
+    of "selected_vertices" and "selected_faces"; in the units of the file, "extent" along each axis,
+    "diagonal", "mean_edge", "area" (squared) and "default_feature_size"; what Spectral Denoise
+    would remove: "noise_summary"; its "noise_kind", "noise_height", "noise_size" and "noise_share"
+    of the surface; the number of "spikes", "voxel_size", and whether it could search,
+    "noise_searched"; "warnings".
+    """
+    on_stage("reading", None)
+    parts = load_parts(source, mesh)
+    selected = _selected(source, parts)
+    V, F = joined(parts)
+    on_stage("measuring", None)
+    spectrum = run(SpectrumOptions.FILTER, V, F, {}, progress=on_stage).report
+    on_stage("looking for noise", None)
+    denoised = run(DENOISE_NAME, V, F, {}, progress=on_stage).report
+    copies = [
+        Warned(
+            "placement",
+            f"{part.name} is placed {1 + len(part.copies)} times: it is described once, in its "
+            "first place",
+        )
+        for part in parts
+        if part.copies
+    ]
+    noise = [one for one in warned(denoised) if one.code != "nothing_removed"]
+    report = {
+        "meshes": [part.name for part in parts if part.name],
+        "vertices": len(V),
+        "faces": len(F),
+        **{name: denoised[name] for name in _OF_SURFACE},
+        "rims": _boundary_loops(V, F),
+        **selected,
+        "extent": np.ptp(V, axis=0),
+        **{name: spectrum[name] for name in _LENGTHS},
+        "noise_summary": spectrum["summary"],  # what was found; denoise says what it did
+        **{name: denoised[name] for name in _OF_NOISE},
+    }
+    return plain(with_warnings(report, copies + noise))
+
+
+def _boundary_loops(V: NDArray[np.float64], F: NDArray[np.int64]) -> int:
+    """Count the connected sets of boundary edges, where the surface is not joined at a seam."""
+    place = _core.joined_vertices(np.ascontiguousarray(V), np.ascontiguousarray(F, dtype=np.int32))
+    corners = place[F]
+    sides = np.vstack([corners[:, [k, (k + 1) % 3]] for k in range(3)])
+    edges, faces = np.unique(np.sort(sides, axis=1), axis=0, return_counts=True)
+    return len(set(least_linked(edges[faces == 1].tolist()).values()))
+
+
+def _selected(source: Path, parts: list[Part]) -> dict[str, int]:
+    """Count the selected vertices and faces; only MeshLab's PLY files hold a selection."""
+    if source.suffix.lower() != ".ply":
+        return {}
+    if all(part.selected is None for part in parts):
+        return {"selected_vertices": 0, "selected_faces": 0}
+    load()
+    import pymeshlab
+
+    mesh_set = pymeshlab.MeshSet()
+    try:
+        read_with_meshlab(mesh_set, source)
+    except MeshFileError:  # `load_parts` has read it nevertheless
+        return {}
+    mesh = mesh_set.current_mesh()
+    return {
+        "selected_vertices": mesh.selected_vertex_number(),
+        "selected_faces": mesh.selected_face_number(),
+    }
+
+
+def basis_to_scratch(request: Request, scratch: Path, on_stage: StageCallback) -> dict[str, Any]:
+    """Write the harmonics of a mesh file to a NumPy archive, `scratch` from `writing_whole`.
+
+    Uses all meshes of the file as one, unless one is named. Returns the sizes n and k as "vertices"
+    and "harmonics". Errors are those of `harmonics.manifold_harmonics`, and MeshFileError when the
+    file cannot be read.
+
+    The arrays are eigenvalues (k), frequencies (k), harmonics (n x k) and masses (n) as in
+    `Harmonics`, and the mesh as read, to whose vertices the rows belong: vertices (n x 3), faces
+    (m x 3).
+    """
+    assert isinstance(request.options, BasisOptions)
+    on_stage("reading", None)
+    V, F = load_arrays(request.source, request.mesh)
+    on_stage("computing", None)
+    basis = compute(V, F, request.options, progress=on_stage)
+    on_stage("writing", None)
+    with scratch.open("wb") as file:
+        np.savez(
+            file,
+            eigenvalues=basis.eigenvalues,
+            frequencies=basis.frequencies,
+            harmonics=basis.harmonics,
+            masses=basis.masses,
+            vertices=V,
+            faces=F,
+        )
+    return {"vertices": len(V), "harmonics": len(basis.eigenvalues)}
+
+
+def texture_of(
+    request: Request, on_stage: StageCallback
+) -> tuple[Array, NDArray[Any], SurfaceTexture]:
+    """Measure a mesh file or a region; several meshes are one.
+
+    Returns the vertices, n x 3, and the faces, m x 3, too. Errors are those of `load_parts`,
+    `restricted` and `surface_texture`.
+    """
+    options, region = request.options, request.region
+    assert isinstance(options, TextureOptions)
+    on_stage("reading", None)
+    parts = in_scene(load_parts(request.source, request.mesh))
+    V, F = joined(parts)
+    if len(F) == 0:
+        raise MeshError(f"{request.source} has no faces: there is no surface to measure")
+    selection = None
+    if options.selected or region is not None:
+        chosen = parts if region is None else restricted(parts, region)
+        flags = [
+            np.zeros(len(part.vertices), bool)
+            if one is None or one.selected is None
+            else one.selected
+            for part, one in zip(parts, chosen, strict=True)
+        ]
+        selection = np.concatenate(flags)
+    on_stage("measuring", None)
+    texture = surface_texture(V, F, options, selection=selection, progress=on_stage)
+    units = {part.unit for part in parts}
+    return V, F, replace(texture, unit=units.pop() if len(units) == 1 else "")
+
+
+def spectrum_of(request: Request, on_stage: StageCallback) -> dict[str, Any]:
+    """Measure the spectrum of a mesh file, of all its meshes as one; errors as `geometry_spectrum`.
+
+    Returns what `GeometrySpectrum.from_report` takes.
+    """
+    assert isinstance(request.options, SpectrumOptions)
+    on_stage("reading", None)
+    V, F = load_arrays(request.source, request.mesh)
+    on_stage("measuring", None)
+    return plain(measure(V, F, request.options, on_stage))
