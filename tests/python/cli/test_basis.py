@@ -110,37 +110,6 @@ def test_a_dozen_pictures_range_from_the_first_harmonic_to_the_last(first: int, 
     assert modes[-1] == size - 1
 
 
-WRONG: dict[str, tuple[list[object], int, str]] = {
-    "larger than the mesh": (["-k", 5000], 2, "--basis-size 5000"),
-    "no size": (["-k", 0], 2, "--basis-size 0"),
-    "another boundary": (["--boundary", "loose"], 2, "fixed"),
-    "a mode beyond the basis": (["-k", 10, "--modes", "3,10"], 2, "mode 10"),
-    "a mode that is no number": (["--modes", "first"], 2, "first"),
-    "no .png file": (["--pictures", "sheet.jpg"], 2, ".png"),
-    "no archive of NumPy": (["--output", "basis.txt"], 2, ".npz"),
-    "no such folder": (["--output", "nowhere/basis.npz"], 1, "nowhere"),
-    "no such folder for pictures": (["--pictures", "nowhere/sheet.png"], 1, "create it first"),
-}
-
-
-@pytest.mark.parametrize("case", WRONG)
-def test_a_wrong_option_is_named_and_nothing_is_written(
-    case: str, half_bunny: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    arguments, code, named = WRONG[case]
-    folder = tmp_path / "out"
-    folder.mkdir()
-    monkeypatch.chdir(folder)
-    (folder / "basis.npz").write_bytes(PRECIOUS)
-    done = command(half_bunny, "--overwrite", *arguments)
-    assert done.returncode == code, done.stderr
-    assert named in done.stderr
-    assert "Traceback" not in done.stderr
-    assert done.stdout == ""
-    assert list(folder.iterdir()) == [folder / "basis.npz"]
-    assert (folder / "basis.npz").read_bytes() == PRECIOUS
-
-
 def test_an_archive_is_replaced_on_request_only(half_bunny: Path, tmp_path: Path) -> None:
     output = tmp_path / "basis.npz"
     output.write_bytes(PRECIOUS)

@@ -10,7 +10,6 @@ from pathlib import Path
 
 import numpy as np
 import pymeshlab
-import pytest
 from batches import REPORT, contents, make_meshes, records
 from broken_meshes import make_broken_meshes
 from commands import (
@@ -146,29 +145,6 @@ def test_a_dry_run_lists_the_outputs_and_does_nothing(tmp_path: Path) -> None:
     assert not out.exists()
 
 
-@pytest.mark.parametrize(
-    ("arguments", "word"),
-    [
-        (["--order", "0"], "order"),
-        (["--name", "{size}"], "{stem}"),
-        (["--format", "mesh3"], "ply"),
-        (["--workers", "0"], "--workers"),
-        (["--memory-limit", "much"], "4GB"),
-        (["--memory-limit", "0"], "4GB"),
-        (["--recipe", "none.toml"], "none.toml"),
-        (["--script", "none.mlx"], "none.mlx"),
-        (["--scheduler", "tcp://127.0.0.1:1", "--workers", "1"], "with a scheduler"),
-        (["nothing.ply"], "nothing.ply"),
-    ],
-)
-def test_a_mistake_is_named_before_anything_is_done(
-    arguments: list[str], word: str, cow: Path, tmp_path: Path
-) -> None:
-    out = tmp_path / "out"
-    assert_fails(command("batch", cow, "--output", out, *arguments), 2, word)
-    assert not out.exists()
-
-
 def test_results_that_fell_short_are_counted_and_their_warnings_kept(
     cow: Path, tmp_path: Path
 ) -> None:
@@ -182,10 +158,6 @@ def test_results_that_fell_short_are_counted_and_their_warnings_kept(
     warnings = {record["name"]: record["warnings"] for record in records(out / REPORT)}
     assert warnings["cow.obj"] == []
     assert "nothing can move" in "".join(warnings["flat.ply"])
-
-
-def test_an_output_folder_that_is_a_file_is_refused(cow: Path, existing: Path) -> None:
-    assert_fails(command("batch", cow, "--output", existing), 2, f"{existing} is a file")
 
 
 def test_a_format_without_faces_is_written_with_a_warning(cow: Path, tmp_path: Path) -> None:
@@ -274,14 +246,6 @@ def test_a_script_applies_our_filter_and_meshlabs_own(cow: Path, tmp_path: Path)
     assert filters[0]["report"]["steps"] == 2
     options = ["--script", script, "--steps", 1]
     assert_fails(command("batch", cow, "--output", out, *options), 2, "either a script or options")
-
-
-@pytest.mark.parametrize("text", ["no script", "<html/>", "<FilterScript/>"])
-def test_a_file_that_is_not_a_script_is_refused(text: str, cow: Path, tmp_path: Path) -> None:
-    script = tmp_path / "x.mlx"
-    script.write_text(text)
-    done = command("batch", cow, "--output", tmp_path / "out", "--script", script)
-    assert_fails(done, 2, "script")
 
 
 def test_the_logs_of_workers_stay_out_of_the_lines_of_verbose(tmp_path: Path) -> None:

@@ -78,29 +78,3 @@ def test_the_picture_shows_both_meshes_and_the_deviation_in_colours(
     third = pixels.shape[1] // 3
     assert not saturation[:, : 2 * third].any()
     assert saturation[:, 2 * third :].mean() > 0.2
-
-
-@pytest.mark.parametrize(
-    ("options", "said"),
-    [(["--output", "x.obj"], ".ply"), (["--picture", "x.svg"], ".png")],
-)
-def test_a_wrong_ending_is_refused_before_any_work(
-    options: list[str], said: str, pair: tuple[Path, Path]
-) -> None:
-    done = command("compare", *pair, *options)
-    assert done.returncode == 2
-    assert said in done.stderr
-
-
-def test_a_mesh_that_is_missing_or_has_no_surface_is_named(
-    pair: tuple[Path, Path], tmp_path: Path
-) -> None:
-    missing = command("compare", pair[0], tmp_path / "none.ply")
-    assert missing.returncode == 1
-    assert "none.ply" in missing.stderr
-    flat = tmp_path / "flat.off"
-    flat.write_text("OFF\n3 1 0\n0 0 0\n0 0 0\n0 0 0\n3 0 1 2\n")
-    done = command("compare", pair[0], flat)
-    assert done.returncode == 1
-    assert "no face with an area" in done.stderr
-    assert "Traceback" not in done.stderr

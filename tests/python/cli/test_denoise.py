@@ -9,7 +9,7 @@ import numpy as np
 import pymeshlab
 import pytest
 from batches import REPORT, contents, make_meshes, records
-from commands import arrays_of, assert_fails, command, messages_in
+from commands import arrays_of, command, messages_in
 from meshlab_spectral import DenoiseOptions
 from meshlab_spectral.files.recipe import load_recipe
 from numpy.testing import assert_array_equal
@@ -72,25 +72,6 @@ def test_a_height_is_given_in_mean_edges(scan: Path, tmp_path: Path) -> None:
     height = 0.2 * np.linalg.norm(V[F] - V[np.roll(F, 1, axis=1)], axis=2).mean()
     assert record["report"]["noise_height"] == pytest.approx(height, rel=1e-6)
     assert_array_equal(arrays_of(target)[0], denoised(scan, height))
-
-
-@pytest.mark.parametrize(
-    ("arguments", "word"),
-    [
-        (["--strength", "-1"], "strength"),
-        (["--strength", "strong"], "strength"),
-        (["--noise-height", "-0.2e"], "noise-height"),
-        (["--noise-height", "0"], "noise-height"),
-        (["--boundary", "loose"], "fixed"),
-        (["--feature-size", "2%"], "--feature-size"),
-    ],
-    ids=" ".join,
-)
-def test_a_wrong_option_is_named_before_any_file_is_touched(
-    arguments: list[str], word: str, existing: Path, tmp_path: Path
-) -> None:
-    done = command("denoise", tmp_path / "no such.ply", existing, "--overwrite", *arguments)
-    assert_fails(done, 2, word)
 
 
 @pytest.mark.slow
@@ -156,45 +137,3 @@ def test_a_batch_denoises_with_every_option_of_denoise(scan: Path, tmp_path: Pat
     assert command("batch", scan, *again, "--denoise").returncode == 0
     (record,) = records(tmp_path / "again" / REPORT)
     assert record["options"] == {**expected, "strength": 2.0}
-
-
-@pytest.mark.parametrize(
-    ("arguments", "words"),
-    [
-        (["--denoise", "--feature-size", "2%"], ["--feature-size is not an option of denoise"]),
-        (["--denoise", "--preset", "sharpen"], ["the preset sharpen is for filter"]),
-        (["--recipe", "DENOISE", "--steps", "3"], ["--steps is not an option of denoise"]),
-        (["--recipe", "FILTER", "--denoise"], ["filter.toml is for filter, not for denoise"]),
-        (["--recipe", "FILTER", "--strength", "2"], ["--strength is not an option of filter"]),
-        (["--strength", "2"], ["--strength is not an option of filter", "add --denoise"]),
-    ],
-    ids=lambda value: " ".join(value),
-)
-def test_options_and_recipes_of_the_other_filter_are_refused(
-    arguments: list[str], words: list[str], scan: Path, tmp_path: Path
-) -> None:
-    files = {"DENOISE": recipe_in(tmp_path, "[denoise]\n"), "FILTER": tmp_path / "filter.toml"}
-    files["FILTER"].write_text("[filter]\n", encoding="utf-8")
-    out = tmp_path / "clean"
-    given = [str(files.get(argument, argument)) for argument in arguments]
-    assert_fails(command("batch", scan, "--output", out, *given), 2, *words)
-    assert not out.exists()
-
-
-@pytest.mark.parametrize(
-    ("text", "word"),
-    [
-        ("[denoise]\n[filter]\n", "has several tables"),
-        ("[denoise]\nfeature_size = '2%'\n", "there is no option feature_size"),
-        ("[denoise]\nstrength = -1\n", "strength = -1"),
-        ("strength = 1\n", "strength outside it"),
-        ("[denoising]\n", "[filter] or [denoise]"),
-    ],
-)
-def test_a_wrong_recipe_is_refused_with_what_is_wrong_in_it(
-    text: str, word: str, scan: Path, tmp_path: Path
-) -> None:
-    recipe, out = recipe_in(tmp_path, text), tmp_path / "clean"
-    done = command("batch", scan, "--output", out, "--recipe", recipe)
-    assert_fails(done, 2, word, str(recipe))
-    assert not out.exists()

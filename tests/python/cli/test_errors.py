@@ -4,19 +4,10 @@ from __future__ import annotations
 
 import os
 import shutil
-import subprocess
 from pathlib import Path
 
 import pytest
-from commands import COMMAND, assert_fails, command, write_ply
-
-
-def test_a_missing_input_is_named(existing: Path, tmp_path: Path) -> None:
-    missing = tmp_path / "no such.ply"
-    assert_fails(
-        command("filter", missing, existing, "--overwrite"), 1, str(missing), "does not exist"
-    )
-
+from commands import assert_fails, command, write_ply
 
 NO_FILES = {
     "http://example.org/scan.ply": "`meshlab-spectral batch http://example.org/scan.ply --output",
@@ -43,84 +34,6 @@ def test_what_is_no_mesh_file_is_refused_with_a_remedy(
     done = command(verb, name, *([existing, "--overwrite"] if verb != "info" else []))
     assert_fails(done, 1, name, NO_FILES[name])
     assert "please report it" not in done.stderr
-
-
-def test_an_address_is_no_place_for_a_file(cow: Path) -> None:
-    address = "http://example.org/out.ply"
-    refused = "to which only `meshlab-spectral batch` writes"
-    assert_fails(command("filter", cow, address), 1, address, refused)
-
-
-def test_a_stream_needs_its_format(cow: Path) -> None:
-    assert_fails(command("filter", cow, "-"), 2, "--format: name the format")
-
-
-def test_a_full_disk_is_called_so(cow: Path, tmp_path: Path) -> None:
-    """The limit on the size of a file stands for the disk."""
-    target = tmp_path / "out.obj"
-    limited = f"ulimit -f 20; exec {' '.join(COMMAND)} filter {cow} {target}"
-    done = subprocess.run(["bash", "-c", limited], capture_output=True, text=True, check=False)
-    assert_fails(done, 1, "out.obj cannot be", "make room on the disk")
-    assert not list(tmp_path.iterdir())
-
-
-def test_a_length_beyond_the_mesh_is_refused(cow: Path, existing: Path) -> None:
-    done = command("filter", cow, existing, "--overwrite", "--feature-size", 50)
-    assert_fails(done, 2, "--feature-size 50: is", "did you mean 50%?")
-    done = command("denoise", cow, existing, "--overwrite", "--noise-height", 15)
-    assert_fails(done, 2, "--noise-height 15: is", "did you mean 15%?")
-    done = command("filter", cow, existing, "--overwrite", "--feature-size", 5000)
-    assert_fails(done, 2, "give at most 100%")
-
-
-@pytest.mark.parametrize("ending", [".ply", ".obj", ".stl", ".off"])
-@pytest.mark.parametrize(("content", "cause"), [("", "is empty"), ("this is no mesh\n", "is not")])
-def test_a_broken_input_is_refused_with_the_cause(
-    content: str, cause: str, ending: str, existing: Path, tmp_path: Path
-) -> None:
-    broken = tmp_path / f"broken{ending}"
-    broken.write_text(content)
-    assert_fails(command("filter", broken, existing, "--overwrite"), 1, str(broken), cause)
-
-
-def test_a_cut_off_input_is_refused(cow: Path, existing: Path, tmp_path: Path) -> None:
-    whole, cut = tmp_path / "whole.ply", tmp_path / "cut.ply"
-    command("filter", cow, whole, "--steps", 1)
-    cut.write_bytes(whole.read_bytes()[:20_000])
-    assert_fails(command("filter", cut, existing, "--overwrite"), 1, str(cut), "was cut off")
-
-
-def test_an_input_of_an_unknown_format_is_refused_with_the_known_ones(
-    existing: Path, tmp_path: Path
-) -> None:
-    text = tmp_path / "notes.txt2"
-    text.write_text("notes\n")
-    assert_fails(command("filter", text, existing, "--overwrite"), 1, ".txt2", ".ply")
-
-
-def test_an_empty_mesh_is_refused(existing: Path, tmp_path: Path) -> None:
-    assert_fails(
-        command("filter", write_ply(tmp_path / "m.ply", "", ""), existing, "--overwrite"),
-        1,
-        "empty",
-    )
-
-
-def test_a_point_cloud_is_refused_with_a_way_to_a_surface(existing: Path, tmp_path: Path) -> None:
-    cloud = write_ply(tmp_path / "cloud.ply", "0 0 0\n1 0 0\n0 1 0", "")
-    assert_fails(
-        command("filter", cloud, existing, "--overwrite"),
-        1,
-        "point cloud",
-        "Surface Reconstruction",
-    )
-
-
-def test_a_basis_as_large_as_the_mesh_is_refused(cow: Path, existing: Path) -> None:
-    arguments = ("--spectrum", "truncated", "--basis-size", 5000)
-    assert_fails(
-        command("filter", cow, existing, "--overwrite", *arguments), 2, "2904", "--spectrum full"
-    )
 
 
 def test_a_missing_plugin_is_reported_without_traceback(cow: Path, existing: Path) -> None:

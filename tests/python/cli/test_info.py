@@ -9,7 +9,7 @@ import numpy as np
 import pymeshlab
 import pytest
 from batches import make_meshes
-from commands import assert_fails, command, write_ply
+from commands import command, write_ply
 from helpers import diagonal, mesh_set_of
 from meshlab_spectral import denoise_mesh, geometry_spectrum
 from meshlab_spectral.files.meshes import load_arrays
@@ -83,9 +83,3 @@ def test_closed_surfaces_have_no_rims_and_holes_one_each(tmp_path: Path) -> None
     holes = tmp_path / "holes.off"
     mesh_set.save_current_mesh(str(holes))
     assert (info(torus)["rims"], info(holes)["rims"]) == (0, 2)
-
-
-def test_an_input_that_is_not_a_surface_is_refused(tmp_path: Path) -> None:
-    cloud = write_ply(tmp_path / "cloud.ply", "0 0 0\n1 0 0\n0 1 0", "")
-    assert_fails(command("info", cloud), 1, "point cloud")
-    assert_fails(command("info", tmp_path / "none.ply"), 1, "does not exist")

@@ -131,33 +131,6 @@ def test_a_mask_file_has_a_number_for_each_vertex(ending: str, output: str, tmp_
     np.testing.assert_allclose(arrays_of(target)[0], expected, atol=1e-5)
 
 
-@pytest.mark.slow
-def test_a_region_that_does_not_fit_is_refused_with_the_remedy(tmp_path: Path) -> None:
-    source, target = written(tmp_path, spheres(1.0), "obj"), tmp_path / "out.ply"
-    (tmp_path / "mask.txt").write_text("1 0 1")
-    (tmp_path / "text.txt").write_text("yes no")
-    refused = {
-        ("--box", "1,2,3"): "give six numbers",
-        ("--box", "8,8,8,9,9,9"): "no vertex is there",
-        ("--component", "0"): "give largest, or a number from 1",
-        ("--component", "2"): "there are 1",
-        ("--where", "z = 3"): "compare with ==",
-        ("--where", "0 < z < 3"): "join two by &&",
-        ("--where", "__import__('os')"): "give a condition of x, y, z",
-        ("--where", "q > 1"): "if the mesh has it",
-        ("--mask", tmp_path / "mask.txt"): "has 3 numbers for 642 vertices",
-        ("--mask", tmp_path / "text.txt"): "is not one number for each vertex",
-        ("--mask", tmp_path / "none.npy"): "cannot be read",
-        ("--box", "0,0,0,1,1,1", "--selected"): "leave one out",
-        ("--box", "0,0,0,1,1,1", "--tiles", "2"): "only the whole is filtered in tiles",
-        ("--mesh", "part", "--tiles", "2"): "leave out mesh, or tiles",
-    }
-    for arguments, reason in refused.items():
-        done = command("filter", source, target, *arguments)
-        assert_fails(done, done.returncode or 1, reason)
-        assert not target.exists()
-
-
 MASKS: dict[str, tuple[Any, str]] = {
     "nan": ([0.0, np.nan, 1.0], "has nan for vertex 1: give 0"),
     "infinite": ([0.0, 1.0, np.inf], "has inf for vertex 2: give 0"),

@@ -134,36 +134,3 @@ def test_help_names_the_options_that_make_the_curve_and_no_others() -> None:
     for name in FilterOptions().as_dict():
         shown = f"--{name.replace('_', '-')} " in done.stdout
         assert shown == (name in SHOWN_OPTIONS or name == "basis_size"), name
-
-
-@pytest.mark.parametrize(
-    ("arguments", "code", "words"),
-    [
-        (["missing.ply"], 1, "missing.ply"),
-        (["COW", "--output", "plot.jpg"], 2, ".png, .pdf or .svg"),
-        (["COW", "--output", "plot"], 2, ".png, .pdf or .svg"),
-        (["COW", "--output", "nowhere/plot.png"], 1, "does not exist"),
-        (["COW", "--basis-size", "-1"], 2, "basis-size"),
-        (["COW", "--basis-size", "100000"], 2, "choose at most"),
-        (["COW", "--feature-size", "0"], 2, "above zero"),
-        (["COW", "--laplacian", "graph"], 2, "intrinsic delaunay"),
-        (["COW", "--steps", "3"], 2, "--steps"),
-    ],
-)
-def test_an_invalid_request_is_refused_and_leaves_no_file(
-    arguments: list[str], code: int, words: str, cow: Path, tmp_path: Path
-) -> None:
-    done = command(*[cow if a == "COW" else a for a in arguments], folder=tmp_path)
-    assert done.returncode == code, done.stderr
-    assert done.stdout == ""
-    assert words in done.stderr
-    assert "Traceback" not in done.stderr
-    assert list(tmp_path.iterdir()) == []
-
-
-def test_a_refusal_leaves_an_existing_plot_unchanged(samples: Path, tmp_path: Path) -> None:
-    plot = tmp_path / "plot.png"
-    plot.write_bytes(b"precious")
-    assert command(samples / "cow.obj", "--output", plot, "--basis-size", 100000).returncode == 2
-    assert plot.read_bytes() == b"precious"
-    assert list(tmp_path.iterdir()) == [plot]

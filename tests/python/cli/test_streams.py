@@ -39,14 +39,6 @@ def test_a_stream_without_a_mesh_is_called_standard_input() -> None:
     assert done.stdout == b""
 
 
-def test_only_filter_and_denoise_read_a_stream() -> None:
-    assert_fails(command("info", "-"), 1, "only filter and denoise read")
-
-
-def test_a_report_does_not_go_where_the_mesh_goes(cow: Path) -> None:
-    assert_fails(command("filter", cow, "-", "--format", "ply", "--json"), 2, "--json")
-
-
 @pytest.mark.parametrize("verb", ["filter", "denoise"])
 def test_an_output_is_replaced_only_on_request(verb: str, cow: Path, tmp_path: Path) -> None:
     target = tmp_path / "out.ply"

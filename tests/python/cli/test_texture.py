@@ -52,15 +52,6 @@ def test_the_table_has_the_parameters_of_the_standard(rough: Path) -> None:
         assert f"{name}, " in done.stdout
 
 
-def test_a_cutoff_that_does_not_fit_is_refused(rough: Path) -> None:
-    done = command("texture", rough, "--waviness", "0.3", "--noise", "0.4")
-    assert done.returncode == 2
-    assert "--noise 0.4" in done.stderr
-    assert "Traceback" not in done.stderr
-    for name in ("--waviness", "--nesting-index-l"):
-        assert f"Error: {name}: 0: give" in command("texture", rough, f"{name}=0").stderr
-
-
 def assert_shows_the_deviation(path: Path) -> None:
     """Before and after are grey, on their right is the deviation in colours."""
     pixels = matplotlib.image.imread(path)
@@ -110,16 +101,6 @@ def test_the_coloured_mesh_of_a_filter_is_that_of_the_comparison(
     assert "is OUTPUT" in same.stderr
 
 
-def test_a_picture_that_cannot_be_written_is_refused_before_the_work(
-    rough: Path, tmp_path: Path
-) -> None:
-    output = tmp_path / "out.ply"
-    done = command("filter", rough, output, "--picture", tmp_path / "out.jpg")
-    assert done.returncode == 2
-    assert "PNG" in done.stderr
-    assert not output.exists()
-
-
 def test_the_selection_of_a_file_is_measured(tmp_path: Path) -> None:
     made = pymeshlab.MeshSet()
     made.create_sphere(subdiv=4)
@@ -131,27 +112,6 @@ def test_the_selection_of_a_file_is_measured(tmp_path: Path) -> None:
     record = json.loads(done.stdout)
     assert 0 < record["vertices_evaluated"] < made.current_mesh().vertex_number() * 0.6
     assert record["form_radius"] == pytest.approx(1, rel=0.01)
-
-
-def test_a_file_without_faces_is_refused(tmp_path: Path) -> None:
-    none = tmp_path / "none.ply"
-    none.write_text(
-        "ply\nformat ascii 1.0\nelement vertex 0\nproperty float x\nproperty float y\n"
-        "property float z\nelement face 0\nproperty list uchar int vertex_indices\nend_header\n"
-    )
-    done = command("texture", none)
-    assert done.returncode == 1
-    assert "has no faces" in done.stderr
-    assert "Traceback" not in done.stderr
-
-
-def test_the_input_is_not_replaced(rough: Path) -> None:
-    before = rough.read_bytes()
-    for arguments in (["texture", rough], ["compare", rough, rough]):
-        done = command(*arguments, "--output", rough)
-        assert done.returncode == 2
-        assert "would be lost" in done.stderr
-        assert rough.read_bytes() == before
 
 
 def test_other_files_are_replaced_on_request_only(rough: Path, tmp_path: Path) -> None:

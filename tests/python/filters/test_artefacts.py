@@ -12,7 +12,6 @@ from helpers import assert_same, diagonal, mesh_set_of, percent, snapshot
 from meshlab_spectral import Artefacts, FilterError, OptionError, measure_artefacts
 from numpy.typing import NDArray
 
-ARTEFACTS = "compute_scalar_spectral_artefacts_per_vertex"
 AGREEMENT = 1e-7  # of the diagonal of the bounding box; parameters go through 32-bit floats
 
 Decimated = Callable[..., tuple[NDArray[Any], NDArray[Any]]]

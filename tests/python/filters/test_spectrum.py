@@ -29,7 +29,6 @@ from meshlab_spectral import (
 from meshlab_spectral.files.meshes import load_arrays
 from numpy.typing import NDArray
 
-SPECTRUM = "get_geometry_spectrum"
 OCTAVES = 1e-2  # relative accuracy of an octave's energy
 
 Decimated = Callable[..., tuple[NDArray[Any], NDArray[Any]]]
