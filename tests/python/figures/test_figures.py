@@ -103,15 +103,6 @@ def test_all_pictures_are_drawn_and_their_numbers_recorded(
     assert all(numbers.values())
 
 
-def test_only_the_wanted_figures_are_drawn(meshes: list[Path], tmp_path: Path) -> None:
-    done = script(
-        "paper.py", meshes[0], "--output", tmp_path / "out", "--only", "1", "--scale", 0.2
-    )
-    assert done.returncode == 0, done.stderr
-    pictures = [path.name for path in (tmp_path / "out").glob("*.png")]
-    assert pictures == ["figure1_stability_lying.png"]
-
-
 @pytest.mark.parametrize(
     ("options", "update"), [(LOW_PASS, "conformal"), (BAND, "full")], ids=["low-pass", "band"]
 )

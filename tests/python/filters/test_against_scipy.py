@@ -13,11 +13,19 @@ from numpy.typing import NDArray
 from scipy.special import betainc
 from transfer_functions import RESPONSES, TYPES, gain_of
 
+Array = NDArray[Any]
 Decimated = Callable[..., tuple[NDArray[Any], NDArray[Any]]]
 
 AGREEMENT = 1e-6  # of the diagonal of the bounding box
 FACES = 800  # the time of the reference is cubic
 BASIS_SIZE = 100
+
+
+def assert_agrees(V: Array, Y: Array, expected: Array, record: Callable[..., None]) -> None:
+    error = largest_distance(Y, expected) / diagonal(V)
+    record("largest_distance_in_diagonals", error)
+    assert largest_distance(expected, V) > 1e-3 * diagonal(V), "a test that moves nothing"
+    assert error < AGREEMENT
 
 
 def assert_full_spectrum_agrees(
@@ -35,10 +43,7 @@ def assert_full_spectrum_agrees(
         options["laplacian"],
         options.get("conformal_share", 0.0),
     )
-    error = largest_distance(Y, expected) / diagonal(V)
-    record("largest_distance_in_diagonals", error)
-    assert largest_distance(expected, V) > 1e-3 * diagonal(V), "a test that moves nothing"
-    assert error < AGREEMENT
+    assert_agrees(V, Y, expected, record)
 
 
 @pytest.mark.parametrize("response", RESPONSES)
@@ -74,29 +79,21 @@ def test_a_custom_expression_agrees(
         return 0.2 + 1.5 * w / (1 + w**3)
 
     expected = reference.full_filter(V, F, gain, 3, basis_update, "cotangent")
-    error = largest_distance(Y, expected) / diagonal(V)
-    record_property("largest_distance_in_diagonals", float(error))
-    assert largest_distance(expected, V) > 1e-3 * diagonal(V), "a test that moves nothing"
-    assert error < AGREEMENT
+    assert_agrees(V, Y, expected, record_property)
 
 
 @pytest.mark.parametrize("basis_update", ["conformal", "full"])
 def test_the_uniform_laplacian_agrees(
     basis_update: str, decimated: Decimated, record_property: Callable[..., None]
 ) -> None:
-    V, F = decimated("bunny.obj", FACES)  # which has a boundary
     options = {
         "feature_size": percent(8),
         "laplacian": "uniform",
         "steps": 4,
         "basis_update": basis_update,
     }
-    Y, report = filter_arrays(V, F, **options)
-    expected = reference.full_filter(V, F, gain_of(options, report), 4, basis_update, "uniform")
-    error = largest_distance(Y, expected) / diagonal(V)
-    record_property("largest_distance_in_diagonals", float(error))
-    assert largest_distance(expected, V) > 1e-3 * diagonal(V), "a test that moves nothing"
-    assert error < AGREEMENT
+    # The bunny has a boundary.
+    assert_full_spectrum_agrees(decimated("bunny.obj", FACES), options, record_property)
 
 
 def test_an_equalizer_agrees(decimated: Decimated, record_property: Callable[..., None]) -> None:
@@ -125,10 +122,7 @@ def test_an_equalizer_agrees(decimated: Decimated, record_property: Callable[...
 
     assert report["feature_size"] == pytest.approx(diagonal(V) * np.sqrt(0.4 * 0.05))
     expected = reference.full_filter(V, F, gain, 2, "conformal", "cotangent")
-    error = largest_distance(Y, expected) / diagonal(V)
-    record_property("largest_distance_in_diagonals", float(error))
-    assert largest_distance(expected, V) > 1e-3 * diagonal(V), "a test that moves nothing"
-    assert error < AGREEMENT
+    assert_agrees(V, Y, expected, record_property)
 
 
 @pytest.mark.parametrize("filter_type", ["low-pass", "enhancement"])
@@ -203,7 +197,10 @@ def test_eight_steps_without_update_agree(
 @pytest.mark.parametrize("basis_update", ["full", "conformal"])
 @pytest.mark.parametrize("filter_type", ["low-pass", "enhancement"])
 def test_a_part_of_a_filter_agrees(
-    filter_type: str, basis_update: str, decimated: Decimated
+    filter_type: str,
+    basis_update: str,
+    decimated: Decimated,
+    record_property: Callable[..., None],
 ) -> None:
     V, F = decimated("cow.obj", FACES)
     options = {
@@ -217,8 +214,7 @@ def test_a_part_of_a_filter_agrees(
     Y, report = filter_arrays(V, F, **options)
     whole = gain_of(options, report)
     expected = reference.full_filter(V, F, lambda omega: whole(omega) ** 0.25, 3, basis_update)
-    assert largest_distance(expected, V) > 1e-3 * diagonal(V), "a test that moves nothing"
-    assert largest_distance(Y, expected) < AGREEMENT * diagonal(V)
+    assert_agrees(V, Y, expected, record_property)
 
 
 def test_ideal_low_pass_agrees(
@@ -262,10 +258,8 @@ def test_truncated_basis_agrees(
         options["basis_size"],
         reinject_residual,
     )
-    error = largest_distance(Y, expected) / diagonal(V)
-    record_property("largest_distance_in_diagonals", float(error))
     assert len(report["eigenvalues"]) == sizes[report["computed_bases"] - 1]
-    assert error < AGREEMENT
+    assert_agrees(V, Y, expected, record_property)
 
 
 def test_eigenvalues_of_a_truncated_basis_agree(sample_name: str, decimated: Decimated) -> None:
@@ -321,10 +315,7 @@ def test_a_fixed_boundary_agrees(
         laplacian,
         BASIS_SIZE if spectrum == "truncated" else None,
     )
-    error = largest_distance(Y, expected) / diagonal(V)
-    record_property("largest_distance_in_diagonals", float(error))
-    assert largest_distance(expected, V) > 1e-3 * diagonal(V), "a test that moves nothing"
-    assert error < AGREEMENT
+    assert_agrees(V, Y, expected, record_property)
     rim = reference.boundary_vertices(F)
     assert report["fixed_vertices"] == len(rim) > 15
     np.testing.assert_array_equal(Y[rim], V[rim])

@@ -20,26 +20,34 @@ from helpers import (
     snapshot,
 )
 
-MOVED = ("vertex_matrix", "vertex_normal_matrix", "face_normal_matrix")
+MOVED = {"vertex_matrix", "vertex_normal_matrix", "face_normal_matrix"}
+# What each filter changes.
+TARGETS: dict[str, tuple[dict[str, Any], set[str]]] = {
+    FILTER: ({"steps": 2}, MOVED),
+    "apply_coord_spectral_denoise": ({"noise_height": percent(0.5)}, MOVED),
+    "apply_scalar_spectral_filter_per_vertex": ({}, {"vertex_scalar_array"}),
+    "apply_color_spectral_filter_per_vertex": ({}, {"vertex_color_matrix"}),
+}
 
 
-def test_every_attribute_is_kept(decimated: Callable[..., Any]) -> None:
+@pytest.mark.parametrize("name", TARGETS)
+def test_every_other_attribute_is_kept(name: str, decimated: Callable[..., Any]) -> None:
     mesh_set = decorated(*decimated("cow.obj"))
     mesh = mesh_set.current_mesh()
-    before = snapshot(mesh)
+    before, custom_before, box = snapshot(mesh), custom_attributes(mesh), mesh.bounding_box()
     assert 0 < mesh.selected_vertex_number() < mesh.vertex_number()
     assert 0 < mesh.selected_face_number() < mesh.face_number()
-    custom_before = custom_attributes(mesh)
-
-    mesh_set.apply_filter(FILTER, steps=2)
-
+    parameters, targets = TARGETS[name]
+    assert targets < before.keys()
+    assert len(before) == 12
+    mesh_set.apply_filter(name, **parameters)
     after = snapshot(mesh)
-    assert not np.array_equal(before["vertex_matrix"], after["vertex_matrix"])
-    for name in MOVED:
-        del before[name], after[name]
-    assert len(before) == 9
+    for target in targets:
+        assert not np.array_equal(before.pop(target), after.pop(target)), target
     assert_same(before, after)
     assert_same(custom_before, custom_attributes(mesh))
+    if targets != MOVED:
+        np.testing.assert_array_equal(mesh.bounding_box().max(), box.max())
 
 
 def test_textures_are_kept(samples: Path) -> None:

@@ -15,8 +15,6 @@ import spectral_reference as reference
 from helpers import (
     FILTER,
     assert_same,
-    custom_attributes,
-    decorated,
     length,
     lower_part,
     mesh_set_of,
@@ -250,24 +248,6 @@ def test_noise_is_removed_and_the_field_below_it_is_kept(samples: Path) -> None:
     noise = 0.3 * np.random.default_rng(5).standard_normal(len(V))
     Y, _ = filter_scalars(V, F, field + noise, feature_size="8%")
     assert np.std(Y - field) < 0.25 * np.std(noise)
-
-
-@pytest.mark.parametrize("name", TARGETS)
-def test_every_other_attribute_is_kept(name: str, decimated: Decimated) -> None:
-    mesh_set = decorated(*decimated("cow.obj"))
-    mesh = mesh_set.current_mesh()
-    before, custom_before = snapshot(mesh), custom_attributes(mesh)
-    assert 0 < mesh.selected_vertex_number() < mesh.vertex_number()
-    assert {"wedge_tex_coord_matrix", "face_scalar_array", *TARGETS.values()} <= before.keys()
-    box = mesh.bounding_box()
-    mesh_set.apply_filter(name)
-    after = snapshot(mesh)
-    assert not np.array_equal(before[TARGETS[name]], after[TARGETS[name]])
-    del before[TARGETS[name]], after[TARGETS[name]]
-    assert len(before) == 11
-    assert_same(before, after)
-    assert_same(custom_before, custom_attributes(mesh))
-    np.testing.assert_array_equal(mesh.bounding_box().max(), box.max())
 
 
 def test_after_a_deletion_only_remaining_vertices_count(decimated: Decimated) -> None:

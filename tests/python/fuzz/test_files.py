@@ -7,8 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from commands import assert_fails, command
-from format_samples import SAMPLES, Sample
+from format_samples import SAMPLES
 from fuzz.damages import Damage, damaged, damages
 from fuzz.runs import as_many_as
 from hypothesis import given
@@ -44,14 +43,3 @@ def test_a_damaged_file_is_read_or_refused(
         assert all(np.isfinite(part.vertices).all() for part in document.parts)
         moved = [part.vertices + 1e-3 for part in document.parts]
         document.save(path.with_name(f"moved{path.suffix}"), moved)
-
-
-@pytest.mark.parametrize("sample", SAMPLES, ids=lambda sample: sample.name)
-def test_a_file_that_is_cut_off_is_an_error_of_the_command(
-    sample: Sample, existing: Path, tmp_path: Path
-) -> None:
-    source = tmp_path / sample.name
-    sample.write(source)
-    data = source.read_bytes()
-    source.write_bytes(data[: len(data) // 2])
-    assert_fails(command("filter", source, existing, "--overwrite"), 1, sample.name)
