@@ -5,10 +5,11 @@ from __future__ import annotations
 import inspect
 import re
 from dataclasses import fields
-from typing import Any
+from typing import Any, get_args, get_type_hints, is_typeddict
 
 from meshlab_spectral.filters.option_types import Options
 from sphinx.application import Sphinx
+from sphinx.pycode import ModuleAnalyzer
 
 
 def keep_signature(
@@ -31,14 +32,6 @@ def shorten_arrays(
         lines[number] = re.sub(r"numpy\.ndarray\[.*?\]\]", "array", line)
 
 
-def keep_descriptions(
-    app: Sphinx, what: str, name: str, obj: Any, options: Any, lines: list[str]
-) -> None:
-    """Keep napoleon from reading "Length; 0: none" as a type and what it is for."""
-    if what == "attribute" and lines:
-        lines[0] = f": {lines[0]}"
-
-
 def list_fields(
     app: Sphinx, what: str, name: str, obj: Any, options: Any, lines: list[str]
 ) -> None:
@@ -52,6 +45,25 @@ def list_fields(
         lines += [f"``{one.name} = {defaults[one.name]!r}``", f"   {text}", ""]
 
 
+def list_entries(
+    app: Sphinx, what: str, name: str, obj: Any, options: Any, lines: list[str]
+) -> None:
+    """Add the entries to the docstring of a report: autodoc does not find those of its bases."""
+    if not is_typeddict(obj):
+        return
+    texts = ModuleAnalyzer.for_module(obj.__module__).find_attr_docs()
+    meanings = {entry: " ".join(text).strip() for (_, entry), text in texts.items()}
+    lines += ["", ".. rubric:: Entries", ""]
+    for entry, kind in sorted(get_type_hints(obj).items()):
+        required = "" if entry in obj.__required_keys__ else ", not in every report"
+        typed = str(kind) if get_args(kind) else kind.__name__
+        lines += [
+            f"``{entry}`` ({typed.replace(f'{obj.__module__}.', '')}{required})",
+            f"   {meanings[entry]}",
+            "",
+        ]
+
+
 def help_of(field: Any) -> str:
     """Return the help of a field of a table of options, in which nothing is markup."""
     return re.sub(r"([*`|_\\])", r"\\\1", field.metadata["help"])
@@ -60,7 +72,7 @@ def help_of(field: Any) -> str:
 def setup(app: Sphinx) -> dict[str, Any]:
     """Register the hooks of autodoc."""
     app.connect("autodoc-process-signature", keep_signature)
-    app.connect("autodoc-process-docstring", keep_descriptions, priority=400)
     app.connect("autodoc-process-docstring", shorten_arrays)
     app.connect("autodoc-process-docstring", list_fields)
+    app.connect("autodoc-process-docstring", list_entries)
     return {"parallel_read_safe": True}
