@@ -80,6 +80,14 @@ def test_a_filter_that_is_not_local_is_refused_with_the_reason(
         reach_of(FilterOptions(**options), Lengths(1.0, 0.001, 1.0))
 
 
+def test_every_option_is_known_to_be_local_or_refused() -> None:
+    local = """filter_type feature_size power pass_gain stop_gain transfer_function band_width
+        response order selected steps tolerance passes basis_update conformal_share boundary
+        crease_angle max_displacement weight"""
+    refused = "spectrum basis_size reinject_residual laplacian preserve_volume result"
+    assert {*local.split(), *refused.split()} == {*vars(FilterOptions())}, "see require_local"
+
+
 def test_a_halo_that_does_not_fit_is_refused(
     source: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
