@@ -21,7 +21,7 @@ struct RemovalOptions {
     double meanEdge = 0.0;      ///< Mean edge length, length units.
     bool keepCreases = true;    ///< If false, smooths across creases, too.
     bool isUnderShape = false;  ///< White noise under a shape that is as high, such as ribs.
-    bool isEven = false;        ///< Nearly white: isEvenNoise; linear steps expect white noise.
+    bool isEven = false;        ///< Nearly white: isOtherNoise; linear steps expect white noise.
     bool areImpulses = false;   ///< White noise with many large values.
     bool areScanLines = false;  ///< White noise on long triangles between lines.
     ScanRays rays;              ///< That the noise lies along, if there are any.

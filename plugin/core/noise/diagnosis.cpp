@@ -248,32 +248,33 @@ Diagnosis diagnoseWhole(const FaceGraph& graph, const Points& X,
     progress.report(0.6, kStage);
     const Points N = smoothVertexNormals(graph, diagnosis.X);
     const double correlation = residualCorrelation(graph, diagnosis.X, N, isMeasured);
-    SecondResiduals second = secondResiduals(graph, diagnosis.X, N, isMeasured);
-    second.areEven = !second.isNoise(correlation, edge) &&
-                     isEvenNoise(graph, diagnosis.X, N, isMeasured, second);
-    const bool isWhite = second.areEven || second.isNoise(correlation, edge);
+    const SecondResiduals second = secondResiduals(graph, diagnosis.X, N, isMeasured);
+    const bool isShape = correlation >= kMaxCorrelationOfNoise;
+    const bool isOther =
+        !second.isNoise(correlation, edge) &&
+        isOtherNoise(graph, diagnosis.X, N, isMeasured, correlation, second.correlation);
+    const bool isWhite = isOther || second.isNoise(correlation, edge);
     NoiseEstimate& noise = diagnosis.noise;
     diagnosis.kind = NoiseKind::Shape;
-    const bool isCorrelated = !isWhite && correlation >= kMaxCorrelationOfNoise;
-    const bool isCoarser = isCorrelated && isCoarserNoise(graph, diagnosis.X, N, isMeasured);
-    const bool isRising = isCorrelated && !isCoarser;
+    const bool isRising = !isWhite && isShape;
     if (isKnown || !isRising)
-        noise = estimateNoise(graph, diagnosis.X, N, isMeasured, correlation, second, edge);
+        noise =
+            estimateNoise(graph, diagnosis.X, N, isMeasured, correlation, second, isOther, edge);
     noise.correlation = correlation;
     noise.isUnderShape = noise.isUnderShape && !areNeedles;
     if (isRising || noise.isShape) return diagnosis;
+    const double share = isOther ? 1.0 : noiseShare(correlation);
     if (noise.size > 1.0) {
         // Mean edges that are certainly noise: .04 to .05 on a sheet with many holes and white
         // noise of .05; .076 on a scan by structured light.
         constexpr double kMinCorrelated = 0.06;
-        if ((isCoarser ? 1.0 : noiseShare(correlation)) * noise.height >= kMinCorrelated * edge)
-            diagnosis.kind = NoiseKind::Correlated;
+        if (share * noise.height >= kMinCorrelated * edge) diagnosis.kind = NoiseKind::Correlated;
         return diagnosis;
     }
     if (!isWhite && !noise.isUnderShape && noise.height < kHighNoise * edge &&
         !hasManySpikes(diagnosis))
         return diagnosis;
-    if (!noise.isUnderShape && !noise.isEven) noise.height *= noiseShare(correlation);
+    if (!noise.isUnderShape) noise.height *= share;
     // The steps of voxels are flat, too, but do not alternate.
     if (isWhite || correlation < 0.0) addFlatParts(graph, X, diagnosis.isClean);
     diagnosis.kind = noise.height < kMinHeight * edge ? NoiseKind::None

@@ -160,8 +160,9 @@ Octaves shapePart(const Octaves& height) {
     return shape;
 }
 
-/// Fourth moment over the squared second one of measured values, given by their squares and the
-/// averages of these over the places: 3 for noise, less for crests of one height.
+/// Fourth moment over the squared second one of measured values in units of their places, given by
+/// their squares and the averages of these over the places: 3 for noise of any height, less where
+/// crests have one height, more where most of a place is flatter than its creases.
 double kurtosis(const Eigen::VectorXd& squares, const Eigen::VectorXd& place,
                 const std::vector<bool>& isMeasured) {
     double second = 0.0, fourth = 0.0, count = 0.0;
@@ -178,7 +179,7 @@ double kurtosis(const Eigen::VectorXd& squares, const Eigen::VectorXd& place,
 /// How an octave is distributed.
 struct Distribution {
     double unevenness;  ///< Of its height: 95 % quantile of the places over the median.
-    double kurtosis;    ///< 3 for noise, less for crests of one height.
+    double kurtosis;    ///< Within the places.
 };
 
 Distribution distributionOf(const VertexGraph& graph, const Eigen::VectorXd& octave,
@@ -237,6 +238,9 @@ bool isSelfSimilar(const Octaves& height) {
 constexpr std::array<double, kOctaves> kPowers{0.5, 1.5, 3.0, 6.0, 12.0, 24.0, 48.0};
 /// Octaves in which white noise defines the length 1: the coarser ones have too little.
 constexpr int kWhiteOctaves = 5;
+
+/// Largest rise of noise from an octave to the next coarser one.
+constexpr double kMaxRiseOfNoise = 2.03;
 
 /// Mean length, in edges, of a signal with these energies, over its first octaves.
 double meanLength(const Octaves& energy, int octaves) {
@@ -320,42 +324,32 @@ SecondResiduals secondResiduals(const FaceGraph& graph, const Points& X, const P
             correlationOfNeighbours(graph.vertices, residual, isMeasured)};
 }
 
-bool isCoarserNoise(const FaceGraph& graph, const Points& X, const Points& N,
-                    const std::vector<bool>& isMeasured) {
-    constexpr int kCount = 4, kOctave = 2;
-    // Of the rise: 1.04 and less with noise of .15 edges of the coarser mesh, 1.09 and more on
-    // fractal ground.
-    constexpr double kMaxGrowth = 1.05;
-    const OctaveDeviations octaves = octaveDeviations(graph, X, N, isMeasured, kCount);
-    const Octaves height = (octaves.white > 0.0).select(octaves.shape / octaves.white, 0.0);
-    if (!(height[3] * height[1] < kMaxGrowth * height[2] * height[2])) return false;
-    // On meshes of noise subdivided once 1.4 and less, 2.6 and more. A shape that ends so has 2.4
-    // (many_small_holes); knurls have a kurtosis of 2.3.
-    constexpr double kMaxHigh = 1.8, kMinKurtosis = 2.45;
-    const auto [unevenness, kurtosis] =
-        distributionOf(graph.vertices, octaves.along[kOctave], isMeasured);
-    return unevenness < kMaxHigh && kurtosis > kMinKurtosis;
-}
-
-bool isEvenNoise(const FaceGraph& graph, const Points& X, const Points& N,
-                 const std::vector<bool>& isMeasured, const SecondResiduals& second) {
-    // Volumes of distances with noise of a tenth of a voxel: -.19 and less, 1.93, 1.36, 3.08; clean
-    // meshes: -.13 and more where the rest would do, threads 2.6, a scan 1.69, all others 2.86.
-    constexpr double kMaxCorrelation = -0.17, kMaxRise = 2.03, kMaxHigh = 1.5, kMinKurtosis = 2.95;
-    if (!(second.correlation < kMaxCorrelation)) return false;
+bool isOtherNoise(const FaceGraph& graph, const Points& X, const Points& N,
+                  const std::vector<bool>& isMeasured, double first, double second) {
+    // Of neighbours' second residuals: -.19 and less in volumes, -.16 and -.12 to -.13 on decimated
+    // shapes, -.1 and more with data coarser than the mesh. Of first ones: .23 and less in volumes,
+    // .29 on a subdivided statue, whose facets are as noise is.
+    constexpr double kMaxSecondOfVolume = -0.17, kMaxFirstOfVolume = 0.25;
+    constexpr double kMinSecondOfCoarser = -0.105;
+    const bool isVolume = second < kMaxSecondOfVolume && first < kMaxFirstOfVolume;
+    if (!isVolume && !(second > kMinSecondOfCoarser)) return false;
+    const int octave = isVolume ? 0 : 1;  // beyond it, a shape hides the noise of volumes
     const OctaveDeviations octaves = octaveDeviations(graph, X, N, isMeasured, 4);
-    if (!(octaves.shape[1] * octaves.white[0] < kMaxRise * octaves.shape[0] * octaves.white[1]))
-        return false;
+    const Octaves height = (octaves.white > 0.0).select(octaves.shape / octaves.white, 0.0);
+    if (!(height[octave + 1] < kMaxRiseOfNoise * height[octave])) return false;
+    // Unevenness: 1.45 on a machine part subdivided, 1.54 on one with white noise, which is weak in
+    // the flat. Kurtosis: 2.79 where meshes were subdivided by Loop's rule, 2.75 on a decimated
+    // statue and 2.73 on knurls with white noise.
+    constexpr double kMaxUnevenness = 1.5, kMinKurtosis = 2.77;
     const auto [unevenness, kurtosis] =
-        distributionOf(graph.vertices, octaves.along[0], isMeasured);
-    return unevenness < kMaxHigh && kurtosis > kMinKurtosis;
+        distributionOf(graph.vertices, octaves.along[octave], isMeasured);
+    return unevenness < kMaxUnevenness && kurtosis > kMinKurtosis;
 }
 
 NoiseEstimate estimateNoise(const FaceGraph& graph, const Points& X, const Points& N,
                             const std::vector<bool>& isMeasured, double correlation,
-                            const SecondResiduals& second, double meanEdge) {
-    constexpr double kMinNoiseShare = 0.45;   // share of an octave that must be noise
-    constexpr double kMaxRiseOfNoise = 2.03;  // of noise, from an octave to the next coarser one
+                            const SecondResiduals& second, bool isOther, double meanEdge) {
+    constexpr double kMinNoiseShare = 0.45;  // share of an octave that must be noise
     // Height over the part of it that the shape does not hide, for noise of 1.5 edges.
     constexpr double kHiddenHeight = 1.3;
     const OctaveDeviations octaves = octaveDeviations(graph, X, N, isMeasured);
@@ -405,7 +399,7 @@ NoiseEstimate estimateNoise(const FaceGraph& graph, const Points& X, const Point
                               : std::min(second.height, noise[0]);
         if (isShort) estimate.height = std::min(estimate.height, lowest);
         // Vertices near to each other on the edges of a grid have like noise, so that it rises.
-        estimate.isEven = second.areEven && !estimate.isUnderShape && noise[1] > estimate.height;
+        estimate.isEven = isOther && !estimate.isUnderShape && noise[1] > estimate.height;
         if (estimate.isEven) estimate.height = noise[1];
     }
     // Of second residuals along crests: at least -.22 on clean ribs of six edges, which fall, and

@@ -14,7 +14,7 @@ struct NoiseEstimate {
     double correlation = 1.0;   ///< Correlation of neighbouring residuals: residualCorrelation.
     double meanEdge = 0.0;      ///< Mean edge length, length units.
     bool isUnderShape = false;  ///< White noise under a shape that is as high, such as ribs.
-    bool isEven = false;        ///< Nearly white: isEvenNoise.
+    bool isEven = false;        ///< Nearly white: isOtherNoise.
     bool isShape = false;       ///< Its octaves are those of natural ground or fine relief.
 };
 
@@ -62,7 +62,6 @@ Eigen::VectorXd scaledSecondResiduals(const FaceGraph& graph, const Points& X, c
 struct SecondResiduals {
     double height = 0.0;       ///< Standard deviation of the white noise that has these.
     double correlation = 1.0;  ///< Of neighbours; 1 if all vanish.
-    bool areEven = false;      ///< isEvenNoise, where they are not those of white noise.
 
     /// Whether they are those of white noise.
     /// @param firstCorrelation  result of residualCorrelation: weak noise must alternate there,
@@ -75,18 +74,14 @@ struct SecondResiduals {
 SecondResiduals secondResiduals(const FaceGraph& graph, const Points& X, const Points& N,
                                 std::vector<bool> isMeasured);
 
-/// Whether the residuals rise as those of a shape, since they are noise of data coarser than the
-/// mesh, such as a subdivided one or a volume resampled: from octave to octave they rise by ever
-/// less, alike everywhere, and have the distribution of noise.
-bool isCoarserNoise(const FaceGraph& graph, const Points& X, const Points& N,
-                    const std::vector<bool>& isMeasured);
-
-/// Whether what alternates is noise, though it has not quite the correlation of white noise, such
-/// as that of a volume of distances, whose vertices slide on the edges of its grid: it is alike
-/// everywhere and has the distribution of noise.
-/// @param second  result of secondResiduals.
-bool isEvenNoise(const FaceGraph& graph, const Points& X, const Points& N,
-                 const std::vector<bool>& isMeasured, const SecondResiduals& second);
+/// Whether residuals that are not those of white noise are noise all the same, such as that of data
+/// coarser than the mesh, or of a volume of distances, whose vertices slide on the edges of its
+/// grid: an octave of them is alike everywhere, has the distribution of noise, and the next one
+/// rises by less than that of a shape.
+/// @param first   result of residualCorrelation.
+/// @param second  correlation of secondResiduals.
+bool isOtherNoise(const FaceGraph& graph, const Points& X, const Points& N,
+                  const std::vector<bool>& isMeasured, double first, double second);
 
 /// Height and correlation length of the noise, from the energies along the normals in seven octaves
 /// of lazy diffusion, (I + P) / 2 to the powers 0, 1, 2, 4, ... 64.
@@ -97,8 +92,9 @@ bool isEvenNoise(const FaceGraph& graph, const Points& X, const Points& N,
 /// explain is noise. Medians exclude creases and single outliers.
 /// @param correlation  result of residualCorrelation; if it is that of white noise, the size is 1.
 /// @param second       result of secondResiduals, likewise.
+/// @param isOther      result of isOtherNoise.
 NoiseEstimate estimateNoise(const FaceGraph& graph, const Points& X, const Points& N,
                             const std::vector<bool>& isMeasured, double correlation,
-                            const SecondResiduals& second, double meanEdge);
+                            const SecondResiduals& second, bool isOther, double meanEdge);
 
 }  // namespace spectral
