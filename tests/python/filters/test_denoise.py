@@ -433,3 +433,24 @@ def test_noise_in_a_volume_of_distances_is_removed() -> None:
         # Between two corners of variance 1, values have 2/3 on average.
         assert report["noise_height"] == pytest.approx(np.sqrt(2 / 3) * height * voxel, rel=0.2)
         assert error(X) < 0.5 * error(V)
+
+
+def test_noise_in_a_mesh_finer_than_its_data_is_removed() -> None:
+    """Weak noise, too: a mesh is subdivided once, the clean one stays."""
+    made = pymeshlab.MeshSet()
+    made.create_sphere(subdiv=4)
+    coarse, F = made.current_mesh().vertex_matrix(), made.current_mesh().face_matrix()
+    coarse = coarse * (1 + 0.1 * np.sin(3 * coarse[:, :1]) * np.cos(4 * coarse[:, 1:2]))
+
+    def subdivided(height: float) -> tuple[Array, NDArray[Any]]:
+        mesh_set = mesh_set_of(noisy(coarse, F, height), F)
+        mesh_set.meshing_surface_subdivision_midpoint(
+            iterations=1, threshold=pymeshlab.PercentageValue(0)
+        )
+        return mesh_set.current_mesh().vertex_matrix(), mesh_set.current_mesh().face_matrix()
+
+    C, G = subdivided(0.0)
+    np.testing.assert_array_equal(denoise_mesh(C, G)[0], C)
+    for height in (0.1, 0.3):
+        V, _ = subdivided(height)
+        assert angles(denoise_mesh(V, G)[0], C, G).mean() < 0.3 * angles(V, C, G).mean()
