@@ -124,6 +124,7 @@ DAMAGE = {
     ("4 0 1 2 3", "4 0 1 2 6"): "not among its 6 points",
     ("POINT_DATA 6", "POINT_DATA 5"): "attribute",
     (LEGACY[-8:], ""): "has 2 numbers of 6 in its last array",
+    (LEGACY[LEGACY.index(" 1\nPOINT_DATA") :], ""): "has 11 numbers of 12 in its last array",
 }
 
 
@@ -131,6 +132,11 @@ DAMAGE = {
 def test_a_damaged_file_is_refused(damage: tuple[str, str], message: str, tmp_path: Path) -> None:
     with pytest.raises(MeshFileError, match=message):
         vtk.read(legacy(tmp_path, *damage))
+
+
+def test_the_last_line_may_lack_its_end(tmp_path: Path) -> None:
+    whole = LEGACY[: LEGACY.index("\nPOINT_DATA")]
+    assert len(vtk.read(legacy(tmp_path, LEGACY, whole)).parts[0].vertices) == 6
 
 
 def test_volume_cells_are_refused_with_a_remedy(tmp_path: Path) -> None:
