@@ -13,7 +13,7 @@ from meshlab_spectral.errors import MeshFileError
 from meshlab_spectral.files.extensions import is_same_format
 from meshlab_spectral.files.meshes import load_parts
 from meshlab_spectral.formats.brain import read
-from meshlab_spectral.formats.names import FREE_SURFER
+from meshlab_spectral.formats.names import FREE_SURFER, ending_of
 from meshlab_spectral.formats.opening import format_of, open_document
 from nibabel import gifti
 from nibabel.freesurfer import read_geometry, write_geometry, write_morph_data
@@ -284,3 +284,14 @@ def test_numbers_in_a_file_of_their_own_are_read_and_copied_or_written_into_the_
     (folder / "s.dat").unlink()
     with pytest.raises(MeshFileError, match=r"s\.dat"):
         read(source)
+
+
+def test_only_gifti_has_an_ending_of_two_parts() -> None:
+    endings = {
+        "a.surf.gii.GZ": "gii.GZ",
+        "a.ply.gz": "gz",
+        "a.gii.ply": "ply",
+        "ply": "",
+        ".ply": "",
+    }
+    assert {name: ending_of(name) for name in endings} == endings

@@ -123,6 +123,7 @@ DAMAGE = {
     ("0 0 0 1", "0 nan 0 1"): "vertex 0 is at 0 nan 0",
     ("4 0 1 2 3", "4 0 1 2 6"): "not among its 6 points",
     ("POINT_DATA 6", "POINT_DATA 5"): "attribute",
+    (LEGACY[LEGACY.index(" 2 2\nVERTICES") :], ""): "has 16 numbers of 18 in its points",
     (LEGACY[-8:], ""): "has 2 numbers of 6 in its last array",
     (LEGACY[LEGACY.index(" 1\nPOINT_DATA") :], ""): "has 11 numbers of 12 in its last array",
 }
