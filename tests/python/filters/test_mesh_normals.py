@@ -11,6 +11,7 @@ import pytest
 import pyvista
 import trimesh
 from meshlab_spectral import denoise_mesh, filter_mesh
+from meshlab_spectral.formats import normals as of_package
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
@@ -293,3 +294,9 @@ def test_faces_of_both_orientations_keep_their_normals_outward() -> None:
     mesh = meshio.Mesh(V, {"triangle": turned}, point_data={"Normals": normals})
     moved, _ = filter_mesh(mesh, feature_size="30%")
     assert degrees(moved.point_data["Normals"], vertex_normals(moved.points)) < 2
+
+
+def test_vertices_without_faces_have_zeros_for_a_normal() -> None:
+    found = of_package.vertex_normals(np.vstack([V, V[:1]]), F)
+    np.testing.assert_allclose(found[:-1], vertex_normals(V), atol=1e-12)
+    np.testing.assert_array_equal(found[-1], 0)
