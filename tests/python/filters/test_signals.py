@@ -302,6 +302,7 @@ def test_vertices_without_data_are_treated_as_holes(decimated: Decimated) -> Non
     assert np.isnan(filtered[without]).all()
     np.testing.assert_allclose(filtered[~without], expected[~without], rtol=0, atol=1e-12)
     assert report["vertices_without_data"] == without.sum()
+    assert report["unreferenced_vertices"] == (~without).sum() - len(np.unique(rest))
     with pytest.raises(FilterError, match="no triangle has values at all of its corners"):
         filter_scalars(V, F, np.full(len(V), np.nan))
 
