@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from pathlib import Path
 
 import numpy as np
@@ -26,11 +27,12 @@ def info(path: Path, *arguments: str) -> dict:
 
 
 def test_the_surface_is_counted_with_its_seams_closed(tmp_path: Path) -> None:
-    found = info(write_ply(tmp_path / "cut.ply", CUT, CUT_FACES))
+    found = info(path := write_ply(tmp_path / "cut.ply", CUT, CUT_FACES))
     names = ["vertices", "faces", "components", "rims", "joined_vertices", "unreferenced_vertices"]
     assert [found[name] for name in names] == [12, 5, 2, 2, 2, 1]
     assert found["extent"] == [9, 9, 9]
     assert (found["selected_vertices"], found["selected_faces"]) == (0, 0)
+    assert re.search(r"Vertices without faces\W+1\W*\n", command("info", path).stdout)
 
 
 def test_lengths_and_noise_are_those_of_the_filters(tmp_path: Path) -> None:
