@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 import shutil
 from collections.abc import Callable
 from pathlib import Path
@@ -14,7 +15,7 @@ import pytest
 import trimesh
 from commands import arrays_of, assert_fails, command, messages_in, write_ply
 from helpers import FILTER, lower_part, mesh_set_of, percent
-from meshlab_spectral import FilterOptions, OptionError
+from meshlab_spectral import FilterOptions, OptionError, filter_mesh
 from meshlab_spectral.files.region_vertices import chosen_parts
 from meshlab_spectral.formats.document import Part
 
@@ -79,6 +80,14 @@ def test_report_is_a_table_with_the_input_and_the_output_as_they_were_named(
     for row in ("Feature size", "Largest displacement", "Area", "Volume", "Work"):
         assert row in done.stdout
     assert len(arrays_of(tmp_path / "[bold]öut.ply")[0]) == len(arrays_of(cow)[0])
+
+
+def test_the_table_tells_where_a_bound_was_reached(cow: Path, tmp_path: Path) -> None:
+    bounded = ("--feature-size", "20%", "--max-displacement", "0.1%")
+    done = command("filter", cow, tmp_path / "out.ply", *bounded)
+    _, report = filter_mesh(*arrays_of(cow), feature_size="20%", max_displacement="0.1%")
+    share = f"{100 * report['limited_share']:.2g}"
+    assert re.search(rf"Bound reached at\W+{re.escape(share)} % of the surface", done.stdout)
 
 
 def test_an_open_surface_has_no_volume_in_the_table(
