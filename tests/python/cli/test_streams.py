@@ -28,7 +28,8 @@ def test_standard_streams_have_the_bytes_of_files(verb: str, cow: Path, tmp_path
     assert done.stdout == target.read_bytes()
     assert piped(verb, cow, "-", "--format", ".obj").stdout == target.read_bytes()
     other = tmp_path / "other.obj"
-    assert piped(verb, "-", other, "--format", "obj", mesh=cow.read_bytes()).returncode == 0
+    done = piped(verb, "-", other, "--format", "obj", mesh=cow.read_bytes())
+    assert (done.returncode, b"\nv " in done.stdout) == (0, False), done.stderr
     assert other.read_bytes() == target.read_bytes()
 
 
