@@ -46,8 +46,9 @@ def test_the_numbers_are_those_of_the_function(pair: tuple[Path, Path]) -> None:
 
 def test_the_coloured_mesh_is_b_with_the_deviation(pair: tuple[Path, Path], tmp_path: Path) -> None:
     output = tmp_path / "change.ply"
-    done = command("compare", *pair, "--output", output)
+    done = command("compare", *pair, "--output", output, "--json")
     assert done.returncode == 0, done.stderr
+    assert json.loads(done.stdout)["colour_extent"] == compare(*pair).color_extent
     read, b = plyfile.PlyData.read(output)["vertex"], plyfile.PlyData.read(pair[1])["vertex"]
     for axis in "xyz":
         np.testing.assert_array_equal(read[axis], b[axis])

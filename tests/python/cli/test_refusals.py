@@ -108,6 +108,7 @@ REFUSED: list[tuple[str, int, tuple[str, ...]]] = [
     ("filter cow.ply result.xyzzy --steps 1000", 2, ("result.xyzzy", ".ply")),
     ("filter cow.ply result --steps 1000", 2, ("result", ".ply")),
     ("filter cow.ply new.ply --picture new.jpg", 2, ("PNG",)),
+    ("filter cow.ply new.ply --color-displacement new.ply", 2, ("is OUTPUT",)),
     ("filter cow.ply new.obj --result details", 2, ("new.obj", ".ply")),
     ("denoise cow.ply new.obj --store-noise-height", 2, ("new.obj", ".ply")),
     ("info -", 1, ("only filter and denoise read",)),
