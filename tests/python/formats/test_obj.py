@@ -132,6 +132,13 @@ def test_a_hundredth_of_the_movement_may_be_rounded_away(share: float, is_told: 
     assert (rounding_loss(before, after, lambda points: points + share) is not None) == is_told
 
 
+def test_what_is_rounded_away_is_told_as_lengths_like_the_displacement() -> None:
+    before, after = np.zeros((4, 3)), np.tile([3.0, 4.0, 0.0], (4, 1))
+    told = rounding_loss(before, after, lambda points: points + np.array([0.6, 0.0, 0.8]))
+    assert told is not None
+    assert "near 4 by 1, while the filter moves vertices by 5 (" in told
+
+
 @pytest.fixture
 def textured(tmp_path: Path) -> Path:
     """A file with material libraries, whose textures are in several folders."""

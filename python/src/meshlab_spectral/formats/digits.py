@@ -57,7 +57,7 @@ def rounding_message(
 
 
 def _size(difference: Array) -> float:
-    return float(np.sqrt(np.mean(difference**2)))
+    return float(np.sqrt(np.mean((difference**2).sum(axis=1))))
 
 
 def precision_warnings(
