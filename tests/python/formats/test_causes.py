@@ -118,6 +118,15 @@ def test_an_empty_file_is_called_so(content: bytes, ending: str, tmp_path: Path)
     assert refused(path).code == "empty"
 
 
+@pytest.mark.parametrize("ending", ["dae", "x3d", "3ds", "wrl"])
+def test_a_file_without_a_byte_is_called_empty_where_meshlab_reads_it(
+    ending: str, tmp_path: Path
+) -> None:
+    path = tmp_path / f"scan.{ending}"
+    path.touch()
+    assert refused(path).code == "empty"
+
+
 @pytest.mark.parametrize("name", TEXTS)
 @pytest.mark.parametrize("encoding", ["utf-16", "utf-16-le", "utf-16-be"])
 def test_text_in_utf_16_is_called_so(

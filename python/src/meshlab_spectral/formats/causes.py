@@ -13,6 +13,7 @@ from meshlab_spectral.formats.table import FORMATS, Format
 _LOOKED_AT = 4096  # bytes
 _LONGEST = 300  # characters of a reader's reason
 _AGAIN = "copy it again, or export it again from the program that made it"
+_EMPTY = f"is empty: {_AGAIN}"
 
 
 class EndsEarlyError(ValueError):
@@ -138,7 +139,7 @@ def _cause(content: bytes, ending: str, message: str, reason: object) -> tuple[s
     known = FORMATS.get(ending, _FREE_SURFER)
     name = known.name
     if not content.strip(b" \t\r\n"):
-        return "empty", f"is empty: {_AGAIN}"
+        return "empty", _EMPTY
     if known.is_text and _is_utf16(content):
         return "encoding", "is text in UTF-16: save it in UTF-8 or ASCII"
     kind = _kind_of(content[:_LOOKED_AT])
@@ -166,10 +167,13 @@ def _foreign(kind: _Kind, name: str) -> str:
 
 
 def other_kind(path: Path) -> MeshFileError | None:
-    """Return the error for a file that begins as another format than its name says, if it does."""
+    """Return the error for a file without a byte, or of another format than its name says."""
     ending = path.suffix[1:].lower()
     with path.open("rb") as file:
-        kind = _kind_of(file.read(_LOOKED_AT))
+        head = file.read(_LOOKED_AT)
+    if not head:
+        return MeshFileError(f"{path} {_EMPTY}", "empty")
+    kind = _kind_of(head)
     if kind is None or ending in kind.endings:
         return None
     return MeshFileError(f"{path} {_foreign(kind, f'.{ending}')}", "foreign")
