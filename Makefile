@@ -143,7 +143,6 @@ bench-tiles: $(PACKAGE)  ## meshes of millions of vertices, filtered in tiles: m
 bench-basis: BENCHMARKS := ON
 bench-basis: build $(PACKAGE) $(COMPETITORS)  ## compare the truncated basis with other programs
 	$(BIN)/python tests/benchmarks/bench_basis.py --mesh $(BENCH_MESH) $(BENCH_OPTIONS)
-	build/tests/benchmarks/bench_steps truncated $(BENCH_MESH)
 
 bench-signatures: $(PACKAGE) $(COMPETITORS)  ## compare Shape-DNA and signatures with LaPy and pyFM
 	$(BIN)/python tests/benchmarks/bench_signatures.py $(BENCH_OPTIONS)

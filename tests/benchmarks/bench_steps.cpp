@@ -1,15 +1,12 @@
-// The fractional flow: how fast its step schemes converge, and what a truncated spectrum gains
-// where later steps need no basis.
-//   bench_steps convergence MESH.ply...   errors of both schemes with K steps against a fine limit
-//   bench_steps truncated MESH.ply...     ten truncated steps against ten with a basis each
-// Errors are the largest of any vertex, in diagonals of the bounding box. All take minutes on
-// meshes of 40,000 vertices and more.
+// The fractional flow: how fast its step schemes converge, the errors of both with K steps against
+// a fine limit.
+//   bench_steps MESH.ply...
+// Errors are the largest of any vertex, in diagonals of the bounding box. Takes minutes on meshes
+// of 40,000 vertices and more.
 
-#include <chrono>
 #include <cstdio>
 #include <cstdlib>
 #include <functional>
-#include <string>
 #include <vector>
 
 #include "core/filter/automatic_steps.h"
@@ -19,7 +16,6 @@
 #include "core/mesh/measures.h"
 #include "core/mesh/mesh.h"
 #include "core/mesh/surface.h"
-#include "core/support/threads.h"
 #include "core/transfer/transfer_function.h"
 #include "support/ply.h"
 
@@ -110,54 +106,13 @@ void printConvergence(const char* file) {
     }
 }
 
-void printTruncated(const char* file) {
-    const testing::Mesh mesh = testing::readPly(file);
-    const Surface surface = surfaceOf(mesh.V, mesh.F);
-    const Interior interior(surface.F, connectedComponents(surface.F, surface.X.rows()),
-                            Boundary::Free);
-    const double diagonal = boundingBoxDiagonal(surface.X);
-    constexpr int kSteps = 10;
-    const ThreadTeam team;
-    for (const Case& c : kCases) {
-        FilterOptions options = optionsOf(c, diagonal);
-        options.evaluation.spectrum = Spectrum::Truncated;
-        const TransferFunction F(options.transferFunction, 2.0 * kPi / options.featureSize);
-        LaplacianBuilder laplacians(surface, interior.surfaceComponents(), options.laplacian,
-                                    options.basisUpdate);
-        const auto step = [&](StepEvaluator& evaluate, Vertices& X) {
-            const auto start = std::chrono::steady_clock::now();
-            laplacians.update(X);
-            X = evaluate(laplacians.current(), X, 1.0 / kSteps, {}).Y.front();
-            return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-        };
-        StepEvaluator evaluate(options.evaluation, interior, F);
-        Vertices X = surface.X, withBases = surface.X;
-        double seconds = 0.0, secondsWithBases = 0.0;
-        for (int i = 0; i < kSteps; ++i) {  // in turns: a machine's speed varies
-            seconds += step(evaluate, X);
-            StepEvaluator fresh(options.evaluation, interior, F);
-            secondsWithBases += step(fresh, withBases);
-        }
-        std::printf("| %s | %s | %.1f | %.1f | %.2f | %.1e | %d |\n", file, c.name, seconds,
-                    secondsWithBases, secondsWithBases / seconds,
-                    largestDifference(X, withBases) / diagonal, evaluate.computedBases());
-        std::fflush(stdout);
-    }
-}
-
 }  // namespace
 
 int main(int argc, char** argv) {
-    const std::string table = argc > 2 ? argv[1] : "";
-    if (table != "convergence" && table != "truncated") {
-        std::fprintf(stderr, "usage: %s convergence|truncated MESH.ply...\n", argv[0]);
+    if (argc < 2) {
+        std::fprintf(stderr, "usage: %s MESH.ply...\n", argv[0]);
         return 2;
     }
-    if (table == "truncated")
-        std::printf(
-            "| mesh | filter | seconds | with a basis in every step | ratio | largest distance | "
-            "bases |\n");
-    for (int i = 2; i < argc; ++i)
-        (table == "truncated" ? printTruncated : printConvergence)(argv[i]);
+    for (int i = 1; i < argc; ++i) printConvergence(argv[i]);
     return EXIT_SUCCESS;
 }

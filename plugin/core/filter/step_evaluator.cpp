@@ -35,11 +35,11 @@ void requireOneResidualGain(const TransferFunction& F) {
 std::unique_ptr<Evaluator> evaluatorFor(const EvaluationOptions& options,
                                         const TransferFunction& F) {
     if (options.spectrum == Spectrum::Truncated)
-        return std::make_unique<BasisEvaluator>(F, options.truncation, options.atEveryVertex);
+        return std::make_unique<BasisEvaluator>(F, options.truncation);
     // A rational Krylov space approximates smooth gains; a jump needs the eigenvectors below it.
     if (!F.discontinuities().empty()) {
         requireOneResidualGain(F);
-        return std::make_unique<BasisEvaluator>(F, std::nullopt, options.atEveryVertex);
+        return std::make_unique<BasisEvaluator>(F, std::nullopt);
     }
     return std::make_unique<FullSpectrumEvaluator>(F, options.accuracy, options.atEveryVertex,
                                                    options.solver, options.finerByProducts);

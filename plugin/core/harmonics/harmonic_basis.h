@@ -7,11 +7,10 @@
 
 namespace spectral {
 
-/// Manifold harmonics: the k lowest eigenpairs of W phi = lambda D phi, or k consecutive others.
+/// Manifold harmonics: the k lowest eigenpairs of W phi = lambda D phi.
 struct HarmonicBasis {
     Eigen::MatrixXd Phi;     ///< n x k, D-orthonormal: Phi^T D Phi = I.
     Eigen::VectorXd lambda;  ///< k eigenvalues, ascending; exactly 0 for the constant modes.
-    Index first = 0;         ///< Number of eigenvalues below lambda[0].
 
     // The certificate of a truncated basis; meaningless for a dense one.
     Eigen::VectorXd residuals;  ///< k, |D^-1/2 (W phi - lambda D phi)| / lambda; 0 for constants.

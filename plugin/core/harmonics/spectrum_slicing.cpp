@@ -57,35 +57,32 @@ std::vector<double> firstCuts(Index first, Index k, Index width, double area) {
     return sigmas;
 }
 
-/// Cuts that divide the intervals with too many eigenvalues, assumed evenly spaced; at most one of
-/// them below the eigenvalue number `first`.
-std::vector<double> moreCuts(const std::vector<Count>& counts, Index first, Index width) {
+/// Cuts that divide the intervals with too many eigenvalues, assumed evenly spaced.
+std::vector<double> moreCuts(const std::vector<Count>& counts, Index width) {
     std::vector<double> sigmas;
     for (std::size_t i = 1; i < counts.size(); ++i) {
         const Count &a = counts[i - 1], &b = counts[i];
         const Index parts = (b.below - a.below) / width;
         if (parts < kTooMany || b.sigma - a.sigma <= kMinRelativeWidth * b.sigma) continue;
-        const Index below = std::max<Index>(first - a.below, 0) * parts / (b.below - a.below);
-        for (Index j = std::max<Index>(below, 1); j < parts; ++j)
+        for (Index j = 1; j < parts; ++j)
             sigmas.push_back(a.sigma + (b.sigma - a.sigma) * static_cast<double>(j) /
                                            static_cast<double>(parts));
     }
     return sigmas;
 }
 
-/// Drops the cuts beyond the first one with k eigenvalues below it, and those below the last one
-/// with at most `first`.
-void dropOutside(Index first, Index k, std::vector<Count>& counts) {
+/// Drops the cuts beyond the first one with k eigenvalues below it.
+void dropBeyond(Index k, std::vector<Count>& counts) {
     while (counts[counts.size() - 2].below >= k) counts.pop_back();
-    while (counts[1].below <= first) counts.erase(counts.begin());
 }
 
 }  // namespace
 
-std::vector<SpectralInterval> sliceSpectrum(const Laplacian& laplacian, Index first, Index k,
-                                            Index width, std::vector<ShiftedLdlt>& factors,
+std::vector<SpectralInterval> sliceSpectrum(const Laplacian& laplacian, Index k, Index width,
+                                            std::vector<ShiftedLdlt>& factors,
                                             const Progress& progress) {
-    std::vector<Count> counts{{0.0, laplacian.constants.count()}};
+    const Index first = laplacian.constants.count();
+    std::vector<Count> counts{{0.0, first}};
     double done = 0.0;  // each round takes half of the rest: their number is unknown
     const auto count = [&](const std::vector<double>& sigmas) {
         const double half = 0.5 * (1.0 + done);
@@ -100,11 +97,11 @@ std::vector<SpectralInterval> sliceSpectrum(const Laplacian& laplacian, Index fi
         const bool isGap = counts.back().below == counts[counts.size() - 2].below;
         count({(isGap ? kRaiseInGap : kRaise) * counts.back().sigma});
     }
-    dropOutside(first, k, counts);
-    for (std::vector<double> cuts = moreCuts(counts, first, width); !cuts.empty();
-         cuts = moreCuts(counts, first, width)) {
+    dropBeyond(k, counts);
+    for (std::vector<double> cuts = moreCuts(counts, width); !cuts.empty();
+         cuts = moreCuts(counts, width)) {
         count(cuts);
-        dropOutside(first, k, counts);
+        dropBeyond(k, counts);
     }
 
     // Merge neighbouring intervals with few eigenvalues.

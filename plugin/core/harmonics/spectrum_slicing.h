@@ -19,20 +19,18 @@ struct SpectralInterval {
     double middle() const { return 0.5 * (from + to); }
 };
 
-/// Divides a part of the spectrum, at least eigenvalues first to k - 1, counted from 0, into
-/// intervals of about `width` eigenvalues (spectrum slicing; the bands of Vallet and Levy 2008,
-/// section 3.3).
+/// Divides the lower end of the spectrum, at least its k lowest eigenvalues, into intervals of
+/// about `width` eigenvalues (spectrum slicing; the bands of Vallet and Levy 2008, section 3.3).
 ///
 /// The inertia of W - sigma D counts the eigenvalues below each cut (Sylvester's law of inertia),
 /// so the number of harmonics in each interval is known. The constant modes are in no interval.
 ///
-/// @param first, k  number of constant modes <= first < k < n.
-/// @param factors   one for each thread of the team.
-/// @return ascending intervals that miss no eigenvalue; they start after the constant modes if
-///         `first` is the number of these.
+/// @param k        number of constant modes < k < n.
+/// @param factors  one for each thread of the team.
+/// @return ascending intervals that miss no eigenvalue; they start after the constant modes.
 /// @throws SolverFailure  when there is no such division; Cancelled.
-std::vector<SpectralInterval> sliceSpectrum(const Laplacian& laplacian, Index first, Index k,
-                                            Index width, std::vector<ShiftedLdlt>& factors,
+std::vector<SpectralInterval> sliceSpectrum(const Laplacian& laplacian, Index k, Index width,
+                                            std::vector<ShiftedLdlt>& factors,
                                             const Progress& progress);
 
 }  // namespace spectral

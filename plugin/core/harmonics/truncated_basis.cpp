@@ -66,21 +66,17 @@ bool separate(const std::vector<SpectralInterval>& intervals, const Eigen::Vecto
     return differ;
 }
 
-/// At least the pairs first to k - 1, in intervals of about `width`; empty if an eigenvalue lies on
-/// a cut between two intervals.
-std::optional<HarmonicBasis> inIntervals(const Laplacian& laplacian, Index first, Index k,
-                                         Index width, std::vector<ShiftedLdlt>& factors,
+/// At least the k lowest pairs, in intervals of about `width`; empty if an eigenvalue lies on a cut
+/// between two intervals.
+std::optional<HarmonicBasis> inIntervals(const Laplacian& laplacian, Index k, Index width,
+                                         std::vector<ShiftedLdlt>& factors,
                                          const Progress& progress) {
-    std::vector<SpectralInterval> intervals =
-        sliceSpectrum(laplacian, std::max<Index>(first, laplacian.constants.count()), k, width,
-                      factors, progress.part(0.0, 0.2));
+    const std::vector<SpectralInterval> intervals =
+        sliceSpectrum(laplacian, k, width, factors, progress.part(0.0, 0.2));
     HarmonicBasis basis;
-    basis.first = first == 0 ? 0 : intervals.front().first;
-    for (SpectralInterval& interval : intervals) interval.first -= basis.first;
     const Index size = intervals.back().first + intervals.back().count;
     basis.Phi.resize(laplacian.D.size(), size);
-    if (basis.first == 0)
-        basis.Phi.leftCols(laplacian.constants.count()) = laplacian.constants.orthonormal();
+    basis.Phi.leftCols(laplacian.constants.count()) = laplacian.constants.orthonormal();
     basis.lambda = Eigen::VectorXd::Zero(size);
     std::atomic<bool> isComplete{true};
     runTasks(
@@ -103,16 +99,16 @@ std::optional<HarmonicBasis> inIntervals(const Laplacian& laplacian, Index first
     return basis;
 }
 
-/// At least the pairs first to k - 1.
-HarmonicBasis pairsBetween(const Laplacian& laplacian, Index first, Index k, ShiftedLdlt& ldlt,
-                           const Progress& progress) {
+/// At least the k lowest pairs.
+HarmonicBasis lowestPairs(const Laplacian& laplacian, Index k, ShiftedLdlt& ldlt,
+                          const Progress& progress) {
     std::vector<ShiftedLdlt> factors(static_cast<std::size_t>(ThreadTeam::size()),
                                      ldlt.sibling(laplacian.W));
     double done = 0.0;
     for (const Index width : kWidths) {
         const double end = 0.9 + 0.1 * done;
         std::optional<HarmonicBasis> basis =
-            inIntervals(laplacian, first, k, width, factors, progress.part(done, end));
+            inIntervals(laplacian, k, width, factors, progress.part(done, end));
         done = end;
         if (!basis) continue;
         for (const ShiftedLdlt& factor : factors) ldlt.addWork(factor);
@@ -194,7 +190,7 @@ Eigen::VectorXd relativeResiduals(const Laplacian& laplacian, const HarmonicBasi
                                   const Progress& progress) {
     const SparseMatrix& W = laplacian.W;
     const Eigen::VectorXd& D = laplacian.D;
-    const Index constants = std::max<Index>(0, laplacian.constants.count() - basis.first);
+    const Index constants = laplacian.constants.count();
     Eigen::VectorXd residuals = Eigen::VectorXd::Zero(basis.size());
     runTasks(
         basis.size() - constants,
@@ -208,10 +204,10 @@ Eigen::VectorXd relativeResiduals(const Laplacian& laplacian, const HarmonicBasi
     return residuals;
 }
 
-std::optional<Index> cutOutsideClusters(const Eigen::VectorXd& lambda, Index asked, Index first) {
-    const double spacing = lambda[asked - first - 1] / static_cast<double>(asked);
-    for (Index k = asked - first; k < lambda.size(); ++k)
-        if (lambda[k] - lambda[k - 1] > kClusterSpacing * spacing) return first + k;
+std::optional<Index> cutOutsideClusters(const Eigen::VectorXd& lambda, Index asked) {
+    const double spacing = lambda[asked - 1] / static_cast<double>(asked);
+    for (Index k = asked; k < lambda.size(); ++k)
+        if (lambda[k] - lambda[k - 1] > kClusterSpacing * spacing) return k;
     return std::nullopt;
 }
 
@@ -229,7 +225,7 @@ HarmonicBasis truncatedBasis(const Laplacian& laplacian, Index k, ShiftedLdlt& l
     // A few pairs beyond k show whether k cuts a cluster; take more as long as it does.
     for (Index more = 8;; more *= 2) {
         const Index total = std::min(k + more, n - 1);
-        HarmonicBasis basis = pairsBetween(laplacian, 0, total, ldlt, progress.part(0.0, 0.95));
+        HarmonicBasis basis = lowestPairs(laplacian, total, ldlt, progress.part(0.0, 0.95));
         std::optional<Index> size = cutOutsideClusters(basis.lambda, k);
         if (!size) {
             if (total < n - 1) continue;
@@ -260,16 +256,6 @@ HarmonicBasis harmonicsUpTo(double edge, const Laplacian& laplacian, ShiftedLdlt
     if (below == n) return denseBasis(laplacian);  // nothing to cut
     return truncatedBasis(laplacian, std::max<Index>(below, laplacian.constants.count() + 1), ldlt,
                           progress);
-}
-
-HarmonicBasis harmonicsBetween(const Laplacian& laplacian, Index first, Index last,
-                               ShiftedLdlt& ldlt, const Progress& progress) {
-    requireMemory(last - first, laplacian.D.size());
-    const ThreadTeam team(progress);
-    HarmonicBasis basis = pairsBetween(laplacian, first, last, ldlt, progress.part(0.0, 0.95));
-    basis.residuals = relativeResiduals(laplacian, basis, progress.part(0.95, 1.0));
-    requireUseful(basis.residuals);
-    return basis;
 }
 
 }  // namespace spectral

@@ -33,14 +33,6 @@ HarmonicBasis truncatedBasis(const Laplacian& laplacian, Index k, ShiftedLdlt& l
 HarmonicBasis harmonicsUpTo(double edge, const Laplacian& laplacian, ShiftedLdlt& ldlt,
                             const Progress& progress = {});
 
-/// The eigenpairs first to last - 1, counted from 0, and some more on both sides. The inertia
-/// proves that none in between is missing. Residuals as in truncatedBasis.
-///
-/// @param first, last  number of constant modes < first < last < n.
-/// @throws SolverFailure, Cancelled
-HarmonicBasis harmonicsBetween(const Laplacian& laplacian, Index first, Index last,
-                               ShiftedLdlt& ldlt, const Progress& progress);
-
 /// |D^-1/2 (W phi - lambda D phi)| / |lambda| of every harmonic but the constants; 0 there.
 Eigen::VectorXd relativeResiduals(const Laplacian& laplacian, const HarmonicBasis& basis,
                                   const Progress& progress);
@@ -48,8 +40,7 @@ Eigen::VectorXd relativeResiduals(const Laplacian& laplacian, const HarmonicBasi
 /// The smallest number of pairs >= `asked` at which the spectrum can be cut: the next eigenvalue
 /// must differ from the last one by more than the width of a cluster. Empty if there is none.
 ///
-/// @param lambda  eigenvalues from number `first` on, ascending, including the one after `asked`.
-std::optional<Index> cutOutsideClusters(const Eigen::VectorXd& lambda, Index asked,
-                                        Index first = 0);
+/// @param lambda  the lowest eigenvalues, ascending, including the one after `asked`.
+std::optional<Index> cutOutsideClusters(const Eigen::VectorXd& lambda, Index asked);
 
 }  // namespace spectral

@@ -56,7 +56,8 @@ struct FullSpectrumResult {
 ///
 /// Equals the result with all n harmonics, Y = Phi F(Lambda^1/2) Phi^T D X (Kovnatsky et al. 2012,
 /// Eq. 6). Computed by a Chebyshev series in S (series_evaluation.h); by a Lanczos method
-/// (krylov_spaces.h) if F jumps, or where there are many gains, which share one space.
+/// (krylov_spaces.h) if F is steep or has a cusp, or where there are many gains, which share one
+/// space.
 ///
 /// The stopping rule of the latter is a posteriori: over the surface by a bound from the spectral
 /// measure (KrylovSpaces::squaredErrorBound), at every vertex from the differences between

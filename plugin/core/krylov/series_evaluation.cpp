@@ -27,7 +27,8 @@ using series::Solve;
 constexpr int kMinNodes = 32, kMaxNodes = 2048;
 
 /// Number of solves beyond which a Lanczos space, which adapts to the signal, is tried instead. Up
-/// to 66 (Butterworth of order 8 on a dragon) series took less time; gains that jump take hundreds.
+/// to 66 (Butterworth of order 8 on a dragon) series took less time; gains with cusps take
+/// hundreds.
 constexpr int kMaxSolves = 80;
 
 /// Share of the accuracy for round-off, and for gains between the nodes; half is left for the

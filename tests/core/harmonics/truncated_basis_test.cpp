@@ -50,25 +50,6 @@ TEST(TruncatedBasisSlices, FindEveryCopyOfAMultipleEigenvalue) {
     expectLowest(copies(testing::icosphere(2), 5), 100, "five equal spheres");
 }
 
-TEST(HarmonicsBetween, MissNoPair) {
-    // On the sphere both ends lie inside multiplets: those of degree 9, the 82nd to the 100th, and
-    // of degree 12, the 145th to the 169th.
-    for (const Mesh& mesh : {testing::blob(), testing::icosphere(3), testing::cube(12),
-                             copies(testing::icosphere(2), 5)}) {
-        const Operator A(mesh);
-        const Eigen::VectorXd lambda = denseBasis(A).lambda;
-        ShiftedLdlt ldlt;
-        const Index first = 90, last = 168;
-        const HarmonicBasis near = harmonicsBetween(A, first, last, ldlt, {});
-        ASSERT_LE(near.first, first);
-        ASSERT_GE(near.first + near.size(), last);
-        EXPECT_LT((near.lambda - lambda.segment(near.first, near.size())).cwiseAbs().maxCoeff(),
-                  1e-9 * lambda[last]);
-        EXPECT_LT(testing::orthonormalityError(near.Phi, A.D), 1e-7);
-        EXPECT_LT(near.residuals.maxCoeff(), 1e-7);
-    }
-}
-
 TEST(TruncatedBasisSlices, MissNoPairOfManyEqualParts) {
     // Few eigenvalues with wide gaps: a Lanczos run finds none on one side of its shift.
     expectLowest(copies(testing::icosphere(1), 20), 60, "twenty spheres");
