@@ -18,11 +18,11 @@ namespace {
 Fields<ArtefactOptions> artefactFields() {
     return {
         featureSizeField<ArtefactOptions>(
-            [](auto& call) -> auto& { return call.featureSize; },
+            &ArtefactOptions::featureSize,
             "Feature size of the low-pass or band filter that was applied. A percentage refers to "
             "the diagonal of this mesh, which the filter may have changed: enter the length that "
             "the filter reported."),
-        laplacianField<ArtefactOptions>([](auto& call) -> auto& { return call.laplacian; }),
+        laplacianField<ArtefactOptions>(&ArtefactOptions::laplacian),
     };
 }
 
@@ -33,12 +33,10 @@ struct Measured : Artefacts {
 Entries<Measured> artefactEntries() {
     using R = Measured;
     return {
-        {"rms", "root mean square of the artefacts over the surface, length",
-         [](const R& r) -> Value { return r.rms; }},
-        {"maximum", "largest length of the artefacts at a vertex, length",
-         [](const R& r) -> Value { return r.maximum; }},
-        {"feature_size", "as applied, length", [](const R& r) -> Value { return r.featureSize; }},
-        {"diagonal", "of the bounding box, length", [](const R& r) -> Value { return r.diagonal; }},
+        {"rms", "root mean square of the artefacts over the surface, length", &R::rms},
+        {"maximum", "largest length of the artefacts at a vertex, length", &R::maximum},
+        {"feature_size", "as applied, length", &R::featureSize},
+        {"diagonal", "of the bounding box, length", &R::diagonal},
     };
 }
 

@@ -18,23 +18,20 @@ namespace spectral {
 
 namespace {
 
-struct DenoiseCall {
-    DenoiseOptions options;
-    bool selected = false;
-    Weight weight = Weight::None;
+struct DenoiseCall : DenoiseOptions {
+    bool onlySelected = false;
+    Weight weightBy = Weight::None;
     bool storeNoiseHeight = false;
 };
 
 Fields<DenoiseCall> denoiseFields() {
     using Call = DenoiseCall;
     return {
-        field<Call>([](auto& call) -> auto& { return call.options.strength; }, "strength",
-                    "Denoising strength",
+        field<Call>(&Call::strength, "strength", "Denoising strength",
                     "1 removes the noise as measured. More also removes fine details; less leaves "
                     "some noise; 0 changes nothing.")
             .in("factor"),
-        field<Call>([](auto& call) -> auto& { return call.options.noiseHeight; }, "noise_height",
-                    "Noise height",
+        field<Call>(&Call::noiseHeight, "noise_height", "Noise height",
                     "Standard deviation of the noise along the normals, such as 0.2e. Set it if "
                     "details were mistaken for noise, or noise for details. The default: as "
                     "measured, which the report states.")
@@ -42,30 +39,27 @@ Fields<DenoiseCall> denoiseFields() {
             .length("auto", nullptr, "0: as measured")
             .upToShare(0.2),
         field<Call>(
-            [](auto& call) -> auto& { return call.options.noiseSize; }, "noise_size", "Noise size",
+            &Call::noiseSize, "noise_size", "Noise size",
             "Distance over which the noise is correlated: half the width of its bumps, such "
             "as 2e. Noise of up to one mean edge is independent at each vertex. The default: "
             "as measured.")
             .in("length")
             .length("auto", nullptr, "0: as measured"),
-        selectedField<Call>([](auto& call) -> auto& { return call.selected; }, "four edges"),
-        field<Call>([](auto& call) -> auto& { return call.options.keepCreases; }, "keep_creases",
-                    "Keep creases",
+        selectedField<Call>(&Call::onlySelected, "four edges"),
+        field<Call>(&Call::keepCreases, "keep_creases", "Keep creases",
                     "Do not smooth across creases. Off: creases are rounded; for shapes without "
                     "any.")
             .advanced(),
-        maxDisplacementField<Call>(
-            [](auto& call) -> auto& { return call.options.maxDisplacement; }),
+        maxDisplacementField<Call>(&Call::maxDisplacement),
         weightField<Call>(
-            [](auto& call) -> auto& { return call.weight; },
+            &Call::weightBy,
             "factor on the |noise_height| at each vertex, from 0 (no noise) to 1, for "
             "noise that varies over the surface. *none*: as measured, or the "
             "same everywhere."),
-        boundaryField<Call>([](auto& call) -> auto& { return call.options.boundary; },
+        boundaryField<Call>(&Call::boundary,
                             "*free*: it moves along its normals, no further than the noise "
                             "explains. *fixed*: it stays exactly in place."),
-        field<Call>([](auto& call) -> auto& { return call.storeNoiseHeight; }, "store_noise_height",
-                    "Store noise height",
+        field<Call>(&Call::storeNoiseHeight, "store_noise_height", "Store noise height",
                     "Store the height of the noise found at each vertex, 0 where there is none, "
                     "as the vertex attribute noise_height.")
             .advanced(),
@@ -96,10 +90,10 @@ Entries<DenoiseResult> denoiseEntries() {
              {"noise_share", "share of the surface with noise, 0 to 1",
               [](const R& r) -> Value { return noiseShare(r.diagnosis); }},
              {"noise_height", "of the noise that was filtered or found, length; 0: none",
-              [](const R& r) -> Value { return r.noiseHeight; }},
+              &R::noiseHeight},
              {"noise_size",
               "of the noise that was filtered, length; 0: independent at every vertex, or none",
-              [](const R& r) -> Value { return r.noiseSize; }},
+              &R::noiseSize},
              {"estimated_noise_height",
               "measured standard deviation of the noise along the normals, length",
               [](const R& r) -> Value { return r.diagnosis.noise.height; }},
@@ -123,7 +117,7 @@ Entries<DenoiseResult> denoiseEntries() {
               [](const R& r) -> Value { return r.diagnosis.noise.meanEdge; }},
              {"rounds",
               "number of weak filters that were applied to the normals; 0: nothing changed",
-              [](const R& r) -> Value { return r.rounds; }},
+              &R::rounds},
          },
          movementEntries<R>()});
 }
@@ -214,15 +208,15 @@ Warnings warningsOf(const DenoiseOptions& options, const std::string& summary,
 FilterOutput run(const FilterInput& input, const MeshLengths& mesh, const Values& given,
                  const Progress& progress) {
     DenoiseCall call = callOf(denoiseFields(), given, mesh);
-    if (call.selected) call.options.selected = input.selected;
-    call.options.weight = weightOf(call.weight, input);
-    if (input.whole) call.options.meanEdge = mesh.meanEdge;
-    DenoiseResult result = denoise(input.V, input.F, call.options, progress);
+    if (call.onlySelected) call.selected = input.selected;
+    call.weight = weightOf(call.weightBy, input);
+    if (input.whole) call.meanEdge = mesh.meanEdge;
+    DenoiseResult result = denoise(input.V, input.F, call, progress);
     FilterOutput output;
     output.report = reportOf(denoiseEntries(), result);
-    output.summary = summaryOf(call.options, result);
+    output.summary = summaryOf(call, result);
     output.text = reportText(output.summary, result, mesh.diagonal);
-    output.warnings = warningsOf(call.options, output.summary, result);
+    output.warnings = warningsOf(call, output.summary, result);
     append(percentageWarnings(mesh), output.warnings);
     if (!input.whole) append(periodicWarnings(input.V, input.F, result.V), output.warnings);
     if (call.storeNoiseHeight) output.values = std::move(result.heights);

@@ -64,22 +64,19 @@ Fields<EqualizerCall> equalizerFields() {
                 .to(kMaxEqualizerGain));
     }
     fields.push_back(
-        field<Call>([](auto& call) -> auto& { return call.smallestSize; }, "smallest_size",
-                    "Smallest size",
+        field<Call>(&Call::smallestSize, "smallest_size", "Smallest size",
                     "Size of the details that the last slider scales; it doubles with each slider "
                     "above. The default is three mean edges: a mesh has hardly any finer "
                     "details.")
             .in("length")
             .above(0.0)
             .length("auto", smallestSizeOf, "three mean edges, at most 2.5 % of the diagonal"));
-    fields.push_back(selectedField<Call>([](auto& call) -> auto& { return call.selected; },
-                                         "eight times the smallest size"));
-    fields.push_back(
-        boundaryField<Call>([](auto& call) -> auto& { return call.boundary; },
-                            "*free*: it moves like the rest. *fixed*: it stays exactly in place."));
+    fields.push_back(selectedField<Call>(&Call::selected, "eight times the smallest size"));
+    fields.push_back(boundaryField<Call>(
+        &Call::boundary, "*free*: it moves like the rest. *fixed*: it stays exactly in place."));
     fields.push_back(
         field<Call>(
-            [](auto& call) -> auto& { return call.accurate; }, "accurate", "Accurate",
+            &Call::accurate, "accurate", "Accurate",
             "Off: at most two steps. Changes by gains of 0.5 to 2 are then accurate to about "
             "1 %, those by a gain of 0 may be off by a third; the report states the "
             "error. On: as many steps as needed for an accuracy of 0.05 % of the "

@@ -17,17 +17,15 @@ namespace {
 
 enum class Wanted { FilteredShape, Details };
 
-struct FractionalCall : TransferCall {
-    FilterOptions options;
-    bool selected = false;
+struct FractionalCall : TransferCall<FilterOptions> {
+    bool onlySelected = false;
     Weight weight = Weight::None;
     Wanted result = Wanted::FilteredShape;
 };
 
 const char* unlessTruncated(const FractionalCall& call) {
-    return call.options.evaluation.spectrum == Spectrum::Truncated
-               ? nullptr
-               : "without |spectrum = truncated|";
+    return call.evaluation.spectrum == Spectrum::Truncated ? nullptr
+                                                           : "without |spectrum = truncated|";
 }
 
 /// In the order users decide: what, which size, how strong, how.
@@ -35,10 +33,9 @@ Fields<FractionalCall> fractionalFields() {
     using Call = FractionalCall;
     Fields<Call> fields;
     addTransferFields(fields);
-    fields.push_back(selectedField<Call>([](auto& call) -> auto& { return call.selected; }));
+    fields.push_back(selectedField<Call>(&Call::onlySelected));
     fields.push_back(
-        field<Call>([](auto& call) -> auto& { return call.options.steps; }, "steps",
-                    "Steps (0 = automatic)",
+        field<Call>(&Call::steps, "steps", "Steps (0 = automatic)",
                     "The filter is applied in this many weak steps, because a single strong one "
                     "turns thin parts into spikes or balloons. 0 approximates infinitely many of "
                     "them, to the |tolerance|; 10 is the scheme of the paper with ten steps; 1 is "
@@ -47,8 +44,7 @@ Fields<FractionalCall> fractionalFields() {
             .to(1000.0)
             .advanced());
     fields.push_back(
-        field<Call>([](auto& call) -> auto& { return call.options.tolerance; }, "tolerance",
-                    "Tolerance",
+        field<Call>(&Call::tolerance, "tolerance", "Tolerance",
                     "With |steps| 0: largest distance between the result and that of infinitely "
                     "many steps, on all but a thousandth of the surface. Larger is faster.")
             .in("length")
@@ -56,8 +52,7 @@ Fields<FractionalCall> fractionalFields() {
             .length("0.05%", defaultTolerance, "0.05 % of the diagonal")
             .advanced());
     fields.push_back(
-        field<Call>([](auto& call) -> auto& { return call.options.passes; }, "passes",
-                    "Passes (0 = automatic)",
+        field<Call>(&Call::passes, "passes", "Passes (0 = automatic)",
                     "With |steps| 0: the number of passes of 1, 2, 4, ... steps, whatever the "
                     "|tolerance|. The report says how many a run took: that number repeats the "
                     "run exactly.")
@@ -65,12 +60,11 @@ Fields<FractionalCall> fractionalFields() {
             .to(kMaxPasses)
             .advanced()
             .unusedIf([](const Call& call) -> const char* {
-                return call.options.steps == 0 ? nullptr : "without |steps = 0|";
+                return call.steps == 0 ? nullptr : "without |steps = 0|";
             }));
     fields.push_back(
         field<Call>(
-            [](auto& call) -> auto& { return call.options.basisUpdate; }, "basis_update",
-            "Basis update",
+            &Call::basisUpdate, "basis_update", "Basis update",
             "What every step recomputes from the current shape. *full*, the paper's scheme: "
             "all of its frequencies. *conformal*: its areas only (Kazhdan et al. 2012); "
             "thin parts are drawn in smoothly instead of turning into spikes. *none*: "
@@ -78,8 +72,7 @@ Fields<FractionalCall> fractionalFields() {
             .of({"full", "conformal", "none"})
             .advanced());
     fields.push_back(
-        field<Call>([](auto& call) -> auto& { return call.options.conformalShare; },
-                    "conformal_share", "Conformal share",
+        field<Call>(&Call::conformalShare, "conformal_share", "Conformal share",
                     "For the full update: from 0, the paper's scheme, to 1, the conformal update. "
                     "0.1 is enough to contract thin parts that a strong full update leaves as "
                     "hair-thin spikes.")
@@ -87,13 +80,12 @@ Fields<FractionalCall> fractionalFields() {
             .to(1.0)
             .advanced()
             .unusedIf([](const Call& call) -> const char* {
-                return call.options.basisUpdate == BasisUpdate::Full
-                           ? nullptr
-                           : "without |basis_update = full|";
+                return call.basisUpdate == BasisUpdate::Full ? nullptr
+                                                             : "without |basis_update = full|";
             }));
     fields.push_back(
-        field<Call>([](auto& call) -> auto& { return call.options.evaluation.spectrum; },
-                    "spectrum", "Spectrum",
+        field<Call>([](auto& call) -> auto& { return call.evaluation.spectrum; }, "spectrum",
+                    "Spectrum",
                     "*full* filters all frequencies of the mesh, and is fast. *truncated* computes "
                     "only the lowest frequencies (as many as the |basis_size|) and treats all "
                     "others alike, as older methods do; every step takes long, so set a number of "
@@ -102,8 +94,8 @@ Fields<FractionalCall> fractionalFields() {
             .advanced());
     fields.push_back(
         field<Call>(
-            [](auto& call) -> auto& { return call.options.evaluation.truncation.basisSize; },
-            "basis_size", "Basis size",
+            [](auto& call) -> auto& { return call.evaluation.truncation.basisSize; }, "basis_size",
+            "Basis size",
             "Number of frequencies (manifold harmonics) of a truncated spectrum, e.g. 300. Must be "
             "below the number of vertices; time and memory grow with it.")
             .in("number of harmonics")
@@ -112,42 +104,38 @@ Fields<FractionalCall> fractionalFields() {
             .unusedIf(unlessTruncated));
     fields.push_back(
         field<Call>(
-            [](auto& call) -> auto& { return call.options.evaluation.truncation.reinjectResidual; },
+            [](auto& call) -> auto& { return call.evaluation.truncation.reinjectResidual; },
             "reinject_residual", "Reinject residual",
             "For a truncated spectrum: keep the details beyond the basis, with the mean gain of "
             "their frequencies. Off: drop them.")
             .advanced()
             .unusedIf(unlessTruncated));
-    fields.push_back(
-        laplacianField<Call>([](auto& call) -> auto& { return call.options.laplacian; }));
+    fields.push_back(laplacianField<Call>(&Call::laplacian));
     fields.push_back(boundaryField<Call>(
-        [](auto& call) -> auto& { return call.options.boundary; },
+        &Call::boundary,
         "*free*: it moves like the rest; strong smoothing rounds it off and pulls it in. *fixed*: "
         "it stays exactly in place, and the surface in between is filtered."));
     fields.push_back(
         field<Call>(
-            [](auto& call) -> auto& { return call.options.creaseAngle; }, "crease_angle",
-            "Crease angle (0 = off)",
+            &Call::creaseAngle, "crease_angle", "Crease angle (0 = off)",
             "Edges whose two faces meet at more than this angle, in degrees, stay in place, "
             "and nothing is filtered across them. For the edges of a machine part, e.g. 40.")
             .in("degrees")
             .to(180.0)
             .advanced());
     fields.push_back(
-        field<Call>([](auto& call) -> auto& { return call.options.preserveVolume; },
-                    "preserve_volume", "Preserve volume",
+        field<Call>(&Call::preserveVolume, "preserve_volume", "Preserve volume",
                     "Move the surface along its normals until every closed component has regained "
                     "its volume. Open components have none.")
             .advanced());
-    fields.push_back(maxDisplacementField<Call>(
-        [](auto& call) -> auto& { return call.options.maxDisplacement; }));
+    fields.push_back(maxDisplacementField<Call>(&Call::maxDisplacement));
     fields.push_back(
-        weightField<Call>([](auto& call) -> auto& { return call.weight; },
+        weightField<Call>(&Call::weight,
                           "how much of the filter each vertex gets, from 0 (nothing) to "
                           "1 (all), so that you can paint where to filter. *none*: all of it."));
     fields.push_back(
         field<Call>(
-            [](auto& call) -> auto& { return call.result; }, "result", "Result",
+            &Call::result, "result", "Result",
             "*details*: no vertex moves. What the filter would remove, input minus result, "
             "is stored as the vertex attribute spectral_details, and its length along the "
             "normal, positive outwards, replaces the vertex quality (after it has served as "
@@ -169,25 +157,22 @@ FilterOutput run(const FilterInput& input, const MeshLengths& mesh, const Values
                  const Progress& progress) {
     static const Fields<FractionalCall> fields = fractionalFields();
     FractionalCall call = callOf(fields, given, mesh);
-    FilterOptions& options = call.options;
     // Users do not mean the default by 0, as `FilterOptions` do.
-    if (options.steps == 0 && options.tolerance == 0.0)
+    if (call.steps == 0 && call.tolerance == 0.0)
         throw InvalidOption(
             "tolerance = 0: automatic steps need a length above zero, e.g. 0.05 % of the diagonal "
             "of the bounding box");
-    options.keepThinParts = isDefaultFeatureSize(call.featureSize, mesh);
-    if (input.whole) options.whole = {mesh.meanEdge, input.whole->hasThinParts, input.whole->inner};
-    resolveCustomGain(call, mesh, input.gain);
-    options.transferFunction = call.transfer;
-    options.featureSize = call.featureSize;
-    if (call.selected) options.part.selected = input.selected;
-    options.part.weight = weightOf(call.weight, input);
-    FilterResult result = fractionalFilter(input.V, input.F, options, progress);
+    call.keepThinParts = isDefaultFeatureSize(call.featureSize, mesh);
+    if (input.whole) call.whole = {mesh.meanEdge, input.whole->hasThinParts, input.whole->inner};
+    resolveCustomGain(call.customGain, mesh, input.gain, call.transferFunction, call.featureSize);
+    if (call.onlySelected) call.part.selected = input.selected;
+    call.part.weight = weightOf(call.weight, input);
+    FilterResult result = fractionalFilter(input.V, input.F, call, progress);
     FilterOutput output;
     output.report = reportOf(fractionalEntries(), result);
-    output.text = fractionalText(options, result, mesh.diagonal, {},
+    output.text = fractionalText(call, result, mesh.diagonal, {},
                                  call.result == Wanted::Details ? "Details found" : "");
-    output.warnings = fractionalWarnings(options, result, mesh.diagonal);
+    output.warnings = fractionalWarnings(call, result, mesh.diagonal);
     append(percentageWarnings(mesh), output.warnings);
     if (!input.whole && call.result != Wanted::Details)
         append(periodicWarnings(input.V, input.F, result.V), output.warnings);

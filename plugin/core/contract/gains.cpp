@@ -7,13 +7,13 @@ namespace spectral {
 
 Eigen::VectorXd gainsAt(const Values& given, double featureSize, const MeshLengths& mesh,
                         const Eigen::VectorXd& w) {
-    Fields<TransferCall> fields;
+    Fields<TransferCall<TransferOptions>> fields;
     addTransferFields(fields);
-    TransferCall call = callOf(fields, given, mesh);
+    TransferCall<TransferOptions> call = callOf(fields, given, mesh);
     call.featureSize = featureSize;
     const double unit = cutoffFrequency(featureSize);
-    resolveCustomGain(call, mesh, {});
-    const TransferFunction F(call.transfer, cutoffFrequency(call.featureSize));
+    resolveCustomGain(call.customGain, mesh, {}, call.transferFunction, call.featureSize);
+    const TransferFunction F(call.transferFunction, cutoffFrequency(call.featureSize));
     return w.unaryExpr([&](double x) { return F(x * unit); });
 }
 

@@ -20,14 +20,14 @@ namespace {
 Fields<SpectrumOptions> spectrumFields() {
     using Call = SpectrumOptions;
     return {
-        field<Call>([](auto& call) -> auto& { return call.basisSize; }, "basis_size", "Basis size",
+        field<Call>(&Call::basisSize, "basis_size", "Basis size",
                     "Number of the largest features (manifold harmonics, constant ones included) "
                     "that are also computed individually, for scripts that need them; this takes "
                     "most of the time. The octaves cover all features in any case. On a small "
                     "mesh, all harmonics are computed.")
             .in("number of harmonics"),
-        laplacianField<Call>([](auto& call) -> auto& { return call.laplacian; }),
-        boundaryField<Call>([](auto& call) -> auto& { return call.boundary; },
+        laplacianField<Call>(&Call::laplacian),
+        boundaryField<Call>(&Call::boundary,
                             "*free*: it is part of the shape. *fixed*: only the details that it "
                             "does not determine are measured."),
     };
@@ -36,51 +36,50 @@ Fields<SpectrumOptions> spectrumFields() {
 Entries<GeometrySpectrum> spectrumEntries() {
     using R = GeometrySpectrum;
     return {
-        {"diagonal", "of the bounding box, length", [](const R& r) -> Value { return r.diagonal; }},
-        {"mean_edge", "mean edge, length", [](const R& r) -> Value { return r.meanEdge; }},
+        {"diagonal", "of the bounding box, length", &R::diagonal},
+        {"mean_edge", "mean edge, length", &R::meanEdge},
         {"default_feature_size", "default of `feature_size` for this mesh, length",
          [](const R& r) -> Value { return defaultFeatureSize(r.meanEdge, r.surfaceDiagonal); }},
-        {"area", "of the surface, length²", [](const R& r) -> Value { return r.area; }},
+        {"area", "of the surface, length²", &R::area},
         {"total_energy", "integral of the squared length of the shape over the surface, length⁴",
-         [](const R& r) -> Value { return r.totalEnergy; }},
+         &R::totalEnergy},
         {"frequencies", "of the lowest harmonics, ascending, radians per length; 0 for constants",
-         [](const R& r) -> Value { return r.frequencies; }},
+         &R::frequencies},
         {"amplitudes", "amplitudes of the harmonics of `frequencies`, length; 0 for constants",
-         [](const R& r) -> Value { return r.amplitudes; }},
+         &R::amplitudes},
         {"octave_feature_sizes", "centres of the octaves, descending, length",
-         [](const R& r) -> Value { return r.octaveFeatureSizes; }},
-        {"octave_energies", "energies of the octaves, length⁴",
-         [](const R& r) -> Value { return r.octaveEnergies; }},
+         &R::octaveFeatureSizes},
+        {"octave_energies", "energies of the octaves, length⁴", &R::octaveEnergies},
         {"octave_amplitudes",
          "amplitudes of the octaves, root mean square over the surface, length",
-         [](const R& r) -> Value { return r.octaveAmplitudes; }},
+         &R::octaveAmplitudes},
         {"cumulative_energy",
          "share of the energy in each octave and all larger ones, ascending to 1",
-         [](const R& r) -> Value { return r.cumulativeEnergy; }},
+         &R::cumulativeEnergy},
         {"band_feature_sizes",
          "centres of the third octaves with at least 30 harmonics, descending, length",
-         [](const R& r) -> Value { return r.bandFeatureSizes; }},
+         &R::bandFeatureSizes},
         {"band_amplitudes", "amplitudes of the third octaves of `band_feature_sizes`, length",
-         [](const R& r) -> Value { return r.bandAmplitudes; }},
+         &R::bandAmplitudes},
         {"band_noise",
          "amplitudes that white noise of height 1 at the vertices has in these third octaves",
-         [](const R& r) -> Value { return r.bandNoise; }},
+         &R::bandNoise},
         {"noise_height", "of the noise that was filtered or found, length; 0: none",
          [](const R& r) -> Value {
              return r.diagnosis.isNoise() ? r.diagnosis.noise.height : 0.0;
          }},
         {"noise_feature_size",
          "in details smaller than this there is more noise than shape, length; 0: in none",
-         [](const R& r) -> Value { return r.noiseFeatureSize; }},
+         &R::noiseFeatureSize},
         {"feature_size_50", "half of the energy is in features of at least this size, length",
-         [](const R& r) -> Value { return r.featureSize50; }},
+         &R::featureSize50},
         {"feature_size_90", "90 % of the energy is in features of at least this size, length",
-         [](const R& r) -> Value { return r.featureSize90; }},
+         &R::featureSize90},
         {"feature_size_99", "99 % of the energy is in features of at least this size, length",
-         [](const R& r) -> Value { return r.featureSize99; }},
+         &R::featureSize99},
         {"mismatch",
          "share of the energy that may belong to other octaves; above 0.01 with a warning",
-         [](const R& r) -> Value { return r.mismatch; }},
+         &R::mismatch},
     };
 }
 

@@ -16,33 +16,31 @@ namespace spectral {
 
 namespace {
 
-struct HarmonicsCall {
+struct HarmonicsCall : HarmonicsOptions {
     int mode = 1;  // the first that is not constant on a connected surface
-    HarmonicsOptions options;
     bool storeBasis = false;
 };
 
 Fields<HarmonicsCall> harmonicsFields() {
     using Call = HarmonicsCall;
     return {
-        field<Call>([](auto& call) -> auto& { return call.mode; }, "mode", "Mode",
+        field<Call>(&Call::mode, "mode", "Mode",
                     "Number of the harmonic to show, below the basis size. The constant ones come "
                     "first, one for each component (none with a fixed boundary); higher ones are "
                     "finer.")
             .in("number of a harmonic", "from 0, below the basis size"),
-        field<Call>([](auto& call) -> auto& { return call.options.basisSize; }, "basis_size",
-                    "Basis size",
+        field<Call>(&Call::basisSize, "basis_size", "Basis size",
                     "Number of harmonics to compute, constant ones included. Must be below the "
                     "number of vertices that are not fixed; time and memory grow with it.")
             .in("number of harmonics")
             .from(1.0),
         field<Call>(
-            [](auto& call) -> auto& { return call.storeBasis; }, "store_basis", "Store basis",
+            &Call::storeBasis, "store_basis", "Store basis",
             "Keep all harmonics as vertex attributes named harmonic_0, harmonic_1 and so "
             "on, one number per vertex each. Those of an earlier run are replaced. They are "
             "orthonormal with the vertex areas as weights."),
-        laplacianField<Call>([](auto& call) -> auto& { return call.options.laplacian; }),
-        boundaryField<Call>([](auto& call) -> auto& { return call.options.boundary; },
+        laplacianField<Call>(&Call::laplacian),
+        boundaryField<Call>(&Call::boundary,
                             "*free*: the waves have zero slope across the boundary. *fixed*: they "
                             "are zero there, like the skin of a drum."),
     };
@@ -51,16 +49,14 @@ Fields<HarmonicsCall> harmonicsFields() {
 Entries<ManifoldHarmonics> harmonicsEntries() {
     using R = ManifoldHarmonics;
     return {
-        {"eigenvalues", "of the last basis that was computed, ascending, 1 / length²",
-         [](const R& r) -> Value { return r.lambda; }},
-        {"residuals", "residuals of the harmonics, relative",
-         [](const R& r) -> Value { return r.residuals; }},
+        {"eigenvalues", "of the last basis that was computed, ascending, 1 / length²", &R::lambda},
+        {"residuals", "residuals of the harmonics, relative", &R::residuals},
         {"inertia_count",
          "number of harmonics that the basis must hold, by Sylvester's law; 0 if unneeded",
-         [](const R& r) -> Value { return r.inertiaCount; }},
+         &R::inertiaCount},
         {"whole_size",
          "smallest basis size, from that computed on, that splits no multiple eigenvalue",
-         [](const R& r) -> Value { return r.wholeSize; }},
+         &R::wholeSize},
     };
 }
 
@@ -92,7 +88,7 @@ std::string textOf(const Values& report, int mode) {
 
 void choose(FilterOutput& output, const Values& given) {
     const HarmonicsCall call = callOf(harmonicsFields(), given, {});
-    checkMode(call.mode, call.options.basisSize);
+    checkMode(call.mode, call.basisSize);
     output.text = textOf(output.report, call.mode);
     output.values = output.basis.col(call.mode);
 }
@@ -100,8 +96,8 @@ void choose(FilterOutput& output, const Values& given) {
 FilterOutput run(const FilterInput& input, const MeshLengths& mesh, const Values& given,
                  const Progress& progress) {
     const HarmonicsCall call = callOf(harmonicsFields(), given, mesh);
-    checkMode(call.mode, call.options.basisSize);
-    ManifoldHarmonics harmonics = manifoldHarmonics(input.V, input.F, call.options, progress);
+    checkMode(call.mode, call.basisSize);
+    ManifoldHarmonics harmonics = manifoldHarmonics(input.V, input.F, call, progress);
     FilterOutput output;
     output.report = reportOf(harmonicsEntries(), harmonics);
     output.warnings = residualWarnings(harmonics.residuals);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <initializer_list>
 #include <vector>
 
@@ -11,12 +12,15 @@ namespace spectral {
 /// An entry of a report, and where it is in a result.
 template <class Result>
 struct Entry : ReportEntry {
-    Value (*get)(const Result&);
+    std::function<Value(const Result&)> get;
     bool (*isThere)(const Result&) = nullptr;  ///< Null: always.
 
-    Entry(const char* entry, const char* what, Value (*from)(const Result&),
-          bool (*when)(const Result&) = nullptr)
-        : ReportEntry{entry, what, when == nullptr}, get(from), isThere(when) {}
+    /// @param from  a member of Result, or a function of one.
+    template <class From>
+    Entry(const char* entry, const char* what, From from, bool (*when)(const Result&) = nullptr)
+        : ReportEntry{entry, what, when == nullptr},
+          get([from](const Result& result) -> Value { return std::invoke(from, result); }),
+          isThere(when) {}
 };
 
 template <class Result>

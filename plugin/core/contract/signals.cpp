@@ -26,20 +26,18 @@ const char* const kColorName = "Spectral Filter: Vertex Color";
 
 constexpr double kWhite = 255.0;
 
-struct SignalCall : TransferCall {
-    SignalFilterOptions options;
-    bool selected = false;
+struct SignalCall : TransferCall<SignalFilterOptions> {
+    bool onlySelected = false;
 };
 
 Fields<SignalCall> signalFields() {
     using Call = SignalCall;
     Fields<Call> fields;
     addTransferFields(fields);
-    fields.push_back(selectedField<Call>([](auto& call) -> auto& { return call.selected; }));
+    fields.push_back(selectedField<Call>(&Call::onlySelected));
+    fields.push_back(laplacianField<Call>(&Call::laplacian));
     fields.push_back(
-        laplacianField<Call>([](auto& call) -> auto& { return call.options.laplacian; }));
-    fields.push_back(
-        boundaryField<Call>([](auto& call) -> auto& { return call.options.boundary; },
+        boundaryField<Call>(&Call::boundary,
                             "*free*: values there are filtered like the rest. *fixed*: they are "
                             "kept exactly, and the values in between are filtered."));
     return fields;
@@ -54,26 +52,22 @@ Entries<Filtered> signalEntries() {
     using R = Filtered;
     return joined<R>(
         {{
-             {"feature_size", "as applied, length",
-              [](const R& r) -> Value { return r.featureSize; }},
-             {"cutoff_frequency", "2 π / feature size, radians per length",
-              [](const R& r) -> Value { return r.cutoffFrequency; }},
+             {"feature_size", "as applied, length", &R::featureSize},
+             {"cutoff_frequency", "2 π / feature size, radians per length", &R::cutoffFrequency},
              {"rms_change",
               "root mean square of the changes over the surface, in the units of the values",
-              [](const R& r) -> Value { return r.rmsChange; }},
+              &R::rmsChange},
              {"max_change", "largest change of a value, in its units (colours: levels of 0 to 255)",
-              [](const R& r) -> Value { return r.maxChange; }},
+              &R::maxChange},
              {"error_estimate",
               "estimated error of the evaluation, relative to the size of what is filtered",
-              [](const R& r) -> Value { return r.errorEstimate; }},
+              &R::errorEstimate},
              {"accuracy_reached", "whether the evaluation reached its accuracy",
-              [](const R& r) -> Value { return r.accuracyReached; }},
+              &R::accuracyReached},
              {"vertices_without_data", "number of vertices whose value is NaN, unchanged",
-              [](const R& r) -> Value { return r.verticesWithoutData; }},
-             {"factorizations", "number of sparse factorizations",
-              [](const R& r) -> Value { return r.factorizations; }},
-             {"solves", "number of solves with one right-hand side",
-              [](const R& r) -> Value { return r.solves; }},
+              &R::verticesWithoutData},
+             {"factorizations", "number of sparse factorizations", &R::factorizations},
+             {"solves", "number of solves with one right-hand side", &R::solves},
          },
          surfaceEntries<R>()});
 }
@@ -102,18 +96,14 @@ FilterOutput filterValues(const char* name, const char* signal, const FilterInpu
     if (input.values.size() == 0)
         throw InvalidMesh(ErrorCode::NoData, "there are no values to filter");
     SignalCall call = callOf(fields, given, mesh);
-    resolveCustomGain(call, mesh, input.gain);
-    SignalFilterOptions& options = call.options;
-    options.transferFunction = call.transfer;
-    options.featureSize = call.featureSize;
-    if (call.selected) options.part.selected = input.selected;
-    Filtered result{filterSignal(input.V, input.F, input.values, options, progress),
-                    options.featureSize};
+    resolveCustomGain(call.customGain, mesh, input.gain, call.transferFunction, call.featureSize);
+    if (call.onlySelected) call.part.selected = input.selected;
+    Filtered result{filterSignal(input.V, input.F, input.values, call, progress), call.featureSize};
     std::ostringstream text;
-    text << std::setprecision(4) << name << ": " << nameOf(options.transferFunction.type)
-         << " at feature size " << options.featureSize << " ("
-         << 100.0 * options.featureSize / mesh.diagonal << " % of the diagonal); " << signal
-         << " by " << result.rmsChange << " (root mean square), at most by " << result.maxChange
+    text << std::setprecision(4) << name << ": " << nameOf(call.transferFunction.type)
+         << " at feature size " << call.featureSize << " ("
+         << 100.0 * call.featureSize / mesh.diagonal << " % of the diagonal); " << signal << " by "
+         << result.rmsChange << " (root mean square), at most by " << result.maxChange
          << "; estimated relative error " << std::setprecision(2) << result.errorEstimate << "\n  "
          << surfaceText(result);
     if (result.verticesWithoutData > 0)
@@ -125,7 +115,7 @@ FilterOutput filterValues(const char* name, const char* signal, const FilterInpu
     output.text = text.str();
     output.values = std::move(result.Y);
     const auto warnings = [&] {
-        Warnings all = warningsOf(input.V.rows(), result, options.transferFunction.type);
+        Warnings all = warningsOf(input.V.rows(), result, call.transferFunction.type);
         append(percentageWarnings(mesh), all);
         append(unusedWarnings(fields, call), all);
         return all;

@@ -16,14 +16,13 @@ namespace spectral {
 template <class Result>
 Entries<Result> surfaceEntries() {
     return {
-        {"components", "number of connected components of the surface",
-         [](const Result& r) -> Value { return r.components; }},
+        {"components", "number of connected components of the surface", &Result::components},
         {"unreferenced_vertices", "number of vertices without faces, unchanged",
-         [](const Result& r) -> Value { return r.unreferencedVertices; }},
+         &Result::unreferencedVertices},
         {"joined_vertices", "number of vertices at seams that were joined to another",
-         [](const Result& r) -> Value { return r.joinedVertices; }},
+         &Result::joinedVertices},
         {"fixed_vertices", "number of vertices on a fixed boundary or a crease, unchanged",
-         [](const Result& r) -> Value { return r.fixedVertices; }},
+         &Result::fixedVertices},
     };
 }
 
@@ -32,18 +31,17 @@ template <class Result>
 Entries<Result> movementEntries() {
     return joined<Result>({
         {{"rms_displacement", "root mean square of the displacements, length",
-          [](const Result& r) -> Value { return r.rmsDisplacement; }},
-         {"max_displacement", "largest displacement of a vertex, length",
-          [](const Result& r) -> Value { return r.maxDisplacement; }},
+          &Result::rmsDisplacement},
+         {"max_displacement", "largest displacement of a vertex, length", &Result::maxDisplacement},
          {"limited_share", "share of the surface, 0 to 1, at which the bound on it was reached",
-          [](const Result& r) -> Value { return r.limitedShare; }},
+          &Result::limitedShare},
          {"has_volume", "whether the surface is closed and consistently oriented",
-          [](const Result& r) -> Value { return r.hasVolume; }},
+          &Result::hasVolume},
          {"volume_before", "signed volume of the surface, length³; meaningless unless `has_volume`",
-          [](const Result& r) -> Value { return r.volumeBefore; }},
+          &Result::volumeBefore},
          {"volume_after",
           "signed volume of the filtered surface, length³; meaningless unless `has_volume`",
-          [](const Result& r) -> Value { return r.volumeAfter; }},
+          &Result::volumeAfter},
          {"folded_faces",
           "number of faces that have folded over: turned against the input and the faces around "
           "them, of more than 1 % of the mean area",

@@ -24,17 +24,15 @@ double wavinessOf(const MeshLengths& mesh) {
     return 2.0 * defaultFeatureSize(mesh.meanEdge, mesh.surfaceDiagonal);
 }
 
-struct TextureCall {
-    TextureOptions options;
-    bool selected = false;
+struct TextureCall : TextureOptions {
+    bool onlySelected = false;
 };
 
 Fields<TextureCall> textureFields() {
     using Call = TextureCall;
     return {
         field<Call>(
-            [](auto& call) -> auto& { return call.options.waviness; }, "waviness",
-            "Waviness cutoff",
+            &Call::waviness, "waviness", "Waviness cutoff",
             "Nesting index of the L-filter of ISO 25178-3: what is larger is waviness or "
             "form, not roughness. Waves of this length keep half of their height, as in ISO "
             "16610-61. With a plane, sphere or cylinder as |form|, the whole diagonal means no "
@@ -42,30 +40,28 @@ Fields<TextureCall> textureFields() {
             .in("length")
             .above(0.0)
             .length("auto", wavinessOf, "twelve mean edges, at most 10 % of the diagonal"),
-        field<Call>([](auto& call) -> auto& { return call.options.noise; }, "noise", "Noise cutoff",
+        field<Call>(&Call::noise, "noise", "Noise cutoff",
                     "Nesting index of the S-filter: what is smaller is noise, not roughness. "
                     "The default: nothing is removed.")
             .in("length")
             .length("auto", nullptr, "0: no S-filter"),
-        field<Call>([](auto& call) -> auto& { return call.options.form; }, "form", "Form",
+        field<Call>(&Call::form, "form", "Form",
                     "What counts as form (F-operator), not as roughness. *size*: heights that "
                     "vary more slowly than |form_size|; suits any shape. *plane*, *sphere*, "
                     "*cylinder*: the one nearest to the measured surface, by least squares; "
                     "better for a sphere or a cylinder with a radius of less than two waviness "
                     "cutoffs. *none*: nothing, so that curvature adds to the heights.")
             .of({"size", "none", "plane", "sphere", "cylinder"}),
-        field<Call>([](auto& call) -> auto& { return call.options.formSize; }, "form_size",
-                    "Form size",
+        field<Call>(&Call::formSize, "form_size", "Form size",
                     "For |form| *size*: heights that vary more slowly are form. The default: eight "
                     "times |waviness|.")
             .in("length", "above the waviness cutoff")
             .length("auto", nullptr, "0: eight waviness cutoffs")
             .advanced()
             .unusedIf([](const Call& call) {
-                return call.options.form == FormKind::Size ? nullptr : "without form = size";
+                return call.form == FormKind::Size ? nullptr : "without form = size";
             }),
-        field<Call>([](auto& call) -> auto& { return call.options.creaseAngle; }, "crease_angle",
-                    "Crease angle (degrees)",
+        field<Call>(&Call::creaseAngle, "crease_angle", "Crease angle (degrees)",
                     "Edges between faces whose planes differ by more than this are creases, if the "
                     "form turns as much. The surface within a waviness cutoff of them, and of "
                     "boundaries, is left out: it gets the height 0. Holes of up to a quarter of a "
@@ -74,11 +70,10 @@ Fields<TextureCall> textureFields() {
             .in("degrees")
             .to(180.0)
             .advanced(),
-        field<Call>([](auto& call) -> auto& { return call.selected; }, "selected",
-                    "Only the selection",
+        field<Call>(&Call::onlySelected, "selected", "Only the selection",
                     "Measure only the selected faces and vertices; the others have the height 0. "
                     "A plane, sphere or cylinder is fitted to them alone."),
-        laplacianField<Call>([](auto& call) -> auto& { return call.options.laplacian; }),
+        laplacianField<Call>(&Call::laplacian),
     };
 }
 
@@ -89,32 +84,23 @@ struct Measured : SurfaceTexture {
 Entries<Measured> textureEntries() {
     using R = Measured;
     return {
-        {"waviness", "cutoff of the L-filter, length",
-         [](const R& r) -> Value { return r.waviness; }},
-        {"noise", "cutoff of the S-filter, length; 0: none",
-         [](const R& r) -> Value { return r.noise; }},
-        {"Sa", "mean of the magnitude of the height, length",
-         [](const R& r) -> Value { return r.Sa; }},
-        {"Sq", "root mean square of the height, length", [](const R& r) -> Value { return r.Sq; }},
-        {"Ssk", "skewness of the heights", [](const R& r) -> Value { return r.Ssk; }},
-        {"Sku", "kurtosis of the heights, 3 if they are normally distributed",
-         [](const R& r) -> Value { return r.Sku; }},
-        {"Sp", "height of the highest peak, length", [](const R& r) -> Value { return r.Sp; }},
-        {"Sv", "depth of the deepest valley, length", [](const R& r) -> Value { return r.Sv; }},
-        {"Sz", "from the deepest valley to the highest peak, length",
-         [](const R& r) -> Value { return r.Sz; }},
-        {"Sdq", "root mean square of the slope", [](const R& r) -> Value { return r.Sdq; }},
+        {"waviness", "cutoff of the L-filter, length", &R::waviness},
+        {"noise", "cutoff of the S-filter, length; 0: none", &R::noise},
+        {"Sa", "mean of the magnitude of the height, length", &R::Sa},
+        {"Sq", "root mean square of the height, length", &R::Sq},
+        {"Ssk", "skewness of the heights", &R::Ssk},
+        {"Sku", "kurtosis of the heights, 3 if they are normally distributed", &R::Sku},
+        {"Sp", "height of the highest peak, length", &R::Sp},
+        {"Sv", "depth of the deepest valley, length", &R::Sv},
+        {"Sz", "from the deepest valley to the highest peak, length", &R::Sz},
+        {"Sdq", "root mean square of the slope", &R::Sdq},
         {"Sdr", "additional area of the texture, relative to that of the reference surface",
-         [](const R& r) -> Value { return r.Sdr; }},
-        {"Sk", "height of the core, length", [](const R& r) -> Value { return r.Sk; }},
-        {"Spk", "reduced height of the peaks above the core, length",
-         [](const R& r) -> Value { return r.Spk; }},
-        {"Svk", "reduced depth of the valleys below the core, length",
-         [](const R& r) -> Value { return r.Svk; }},
-        {"Smr1", "share of the area above the core, 0 to 1",
-         [](const R& r) -> Value { return r.Smr1; }},
-        {"Smr2", "share of the area above the lower end of the core, 0 to 1",
-         [](const R& r) -> Value { return r.Smr2; }},
+         &R::Sdr},
+        {"Sk", "height of the core, length", &R::Sk},
+        {"Spk", "reduced height of the peaks above the core, length", &R::Spk},
+        {"Svk", "reduced depth of the valleys below the core, length", &R::Svk},
+        {"Smr1", "share of the area above the core, 0 to 1", &R::Smr1},
+        {"Smr2", "share of the area above the lower end of the core, 0 to 1", &R::Smr2},
         {"Sal", "of a height map: shortest lag at which the autocorrelation falls to .2, length",
          [](const R& r) -> Value { return r.lengths.Sal; },
          [](const R& r) { return r.lengths.Sal > 0.0; }},
@@ -123,32 +109,28 @@ Entries<Measured> textureEntries() {
          "longer than half of the map",
          [](const R& r) -> Value { return r.lengths.Str; },
          [](const R& r) { return r.lengths.Str > 0.0; }},
-        {"area", "of the reference surface where it is evaluated, length²",
-         [](const R& r) -> Value { return r.area; }},
+        {"area", "of the reference surface where it is evaluated, length²", &R::area},
         {"histogram_heights", "centres of the 64 bins of the histogram, ascending, length",
-         [](const R& r) -> Value { return r.histogramHeights; }},
+         &R::histogramHeights},
         {"histogram_shares", "share of the area with a height in each of these bins",
-         [](const R& r) -> Value { return r.histogramShares; }},
+         &R::histogramShares},
         {"bearing_heights",
          "bearing curve (Abbott-Firestone): the heights that 0, 1, ..., 100 % of the area exceed, "
          "length",
-         [](const R& r) -> Value { return r.bearingHeights; }},
-        {"form_radius", "of the sphere or cylinder that was fitted, length",
-         [](const R& r) -> Value { return r.formRadius; },
+         &R::bearingHeights},
+        {"form_radius", "of the sphere or cylinder that was fitted, length", &R::formRadius,
          [](const R& r) { return r.formRadius > 0.0; }},
-        {"vertices_evaluated", "number of vertices that count",
-         [](const R& r) -> Value { return r.evaluated; }},
+        {"vertices_evaluated", "number of vertices that count", &R::evaluated},
         {"vertices_left_out",
          "number of selected vertices within a cutoff of a boundary or a crease, or not on the "
          "fitted shape, as the caps of a cylinder",
-         [](const R& r) -> Value { return r.leftOut; }},
+         &R::leftOut},
         {"Sq_left_out", "root mean square height of those near a boundary, length; 0: none",
-         [](const R& r) -> Value { return r.leftOutSq; }},
+         &R::leftOutSq},
         {"vertices_too_thin",
-         "number of others on parts thinner than the waviness cutoff, left out, too",
-         [](const R& r) -> Value { return r.tooThin; }},
+         "number of others on parts thinner than the waviness cutoff, left out, too", &R::tooThin},
         {"error_estimate", "estimated root mean square error of the heights, length",
-         [](const R& r) -> Value { return r.errorEstimate; }},
+         &R::errorEstimate},
     };
 }
 
@@ -194,13 +176,11 @@ FilterOutput run(const FilterInput& input, const MeshLengths& mesh, const Values
                  const Progress& progress) {
     static const Fields<TextureCall> fields = textureFields();
     TextureCall call = callOf(fields, given, mesh);
-    TextureOptions& options = call.options;
-    if (call.selected) options.selected = input.selected;
+    if (call.onlySelected) call.selected = input.selected;
     constexpr double kSinglePrecision = 1e-6;
-    if (options.waviness >= (1.0 - kSinglePrecision) * mesh.diagonal && isShape(options.form))
-        options.waviness = 0.0;
-    Measured texture{surfaceTexture(input.V, input.F, options, progress), options.waviness,
-                     options.noise};
+    if (call.waviness >= (1.0 - kSinglePrecision) * mesh.diagonal && isShape(call.form))
+        call.waviness = 0.0;
+    Measured texture{surfaceTexture(input.V, input.F, call, progress), call.waviness, call.noise};
     if (!std::isfinite(texture.Sq))
         throw SolverFailure(ErrorCode::SingularMatrix,
                             "the heights are lost in round-off: parts of the mesh are too far "
@@ -224,7 +204,7 @@ FilterOutput run(const FilterInput& input, const MeshLengths& mesh, const Values
                  "on the fitted shape. A smaller |waviness|, or a larger |crease_angle| such as "
                  "180, measures more"});
     constexpr double kSteep = 0.7;  // Sq is .5 % off at .4, and 3.5 % at 1
-    if (!isShape(options.form) && texture.Sdq > kSteep)
+    if (!isShape(call.form) && texture.Sdq > kSteep)
         output.warnings.push_back(
             {WarningCode::SteepTexture, "slopes of the texture are steep, Sdq " +
                                             shortText(texture.Sdq) +

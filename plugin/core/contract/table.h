@@ -70,10 +70,10 @@ struct Field : Parameter {
 template <class Call>
 using Fields = std::vector<Field<Call>>;
 
-/// @param at  the member: `[](auto& call) -> auto& { return call.member; }`.
+/// @param at  the member, `&Call::member`, or where it is: `[](auto& call) -> auto& { ... }`.
 template <class Call, class At>
 Field<Call> field(At at, const char* name, const char* label, const char* help) {
-    using T = std::remove_const_t<std::remove_reference_t<decltype(at(std::declval<Call&>()))>>;
+    using T = std::remove_reference_t<std::invoke_result_t<At, Call&>>;
     Field<Call> made;
     made.name = name;
     made.label = label;
@@ -84,13 +84,17 @@ Field<Call> field(At at, const char* name, const char* label, const char* help) 
                 : std::is_enum_v<T>              ? Parameter::Kind::Choice
                                                  : Parameter::Kind::Number;
     if constexpr (std::is_enum_v<T>) {
-        made.get = [at](const Call& call) -> Value { return static_cast<int>(at(call)); };
+        made.get = [at](const Call& call) -> Value {
+            return static_cast<int>(std::invoke(at, call));
+        };
         made.set = [at](Call& call, const Value& value) {
-            at(call) = static_cast<T>(std::get<int>(value));
+            std::invoke(at, call) = static_cast<T>(std::get<int>(value));
         };
     } else {
-        made.get = [at](const Call& call) -> Value { return at(call); };
-        made.set = [at](Call& call, const Value& value) { at(call) = std::get<T>(value); };
+        made.get = [at](const Call& call) -> Value { return std::invoke(at, call); };
+        made.set = [at](Call& call, const Value& value) {
+            std::invoke(at, call) = std::get<T>(value);
+        };
     }
     const Call defaults;
     made.usual = made.get(defaults);

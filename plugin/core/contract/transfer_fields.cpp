@@ -24,23 +24,24 @@ Equalizer equalizerOf(const Eigen::MatrixXd& samples, double featureSize) {
 
 }  // namespace
 
-void resolveCustomGain(TransferCall& call, const MeshLengths& mesh,
-                       const Eigen::MatrixXd& samples) {
+void resolveCustomGain(const std::string& customGain, const MeshLengths& mesh,
+                       const Eigen::MatrixXd& samples, TransferFunctionOptions& transfer,
+                       double& featureSize) {
     if (samples.rows() > 0) {
-        const Equalizer equalizer = equalizerOf(samples, call.featureSize);
-        call.transfer.type = FilterType::Custom;
-        call.transfer.custom = equalizer;
-        call.featureSize = equalizer.middleSize();
+        const Equalizer equalizer = equalizerOf(samples, featureSize);
+        transfer.type = FilterType::Custom;
+        transfer.custom = equalizer;
+        featureSize = equalizer.middleSize();
         return;
     }
-    if (call.transfer.type != FilterType::Custom) return;
-    const CustomGain custom = parseGain(call.customGain, cutoffFrequency(call.featureSize), mesh);
-    call.transfer.custom = custom.gain;
-    call.featureSize = 2.0 * kPi / custom.cutoff;
+    if (transfer.type != FilterType::Custom) return;
+    const CustomGain custom = parseGain(customGain, cutoffFrequency(featureSize), mesh);
+    transfer.custom = custom.gain;
+    featureSize = 2.0 * kPi / custom.cutoff;
 }
 
 std::string nameOf(FilterType type) {
-    Fields<TransferCall> fields;
+    Fields<TransferCall<TransferOptions>> fields;
     addTransferFields(fields);
     return fields.front().choices[static_cast<std::size_t>(type)];
 }
