@@ -309,6 +309,26 @@ TEST(IntrinsicDelaunay, FlipsTheLongDiagonalOfAKite) {
     EXPECT_NEAR(W(0, 2), -0.25, 1e-12);
 }
 
+TEST(IntrinsicDelaunay, LengthensTheSidesOfANeedleOnALineByATenthOfItsShortest) {
+    // Less than 1e-5 mean edges, as of other triangles. The front and the back of the triangle are
+    // glued along all three sides.
+    constexpr double kShort = 1e-5, kLonger = 0.1 * kShort;
+    Mesh needle{Vertices(3, 3), Faces(1, 3)};
+    needle.V << 0, 0, 0, 1, 0, 0, 1 + kShort, 0, 0;
+    needle.F << 0, 1, 2;
+    const double ab = 1 + kLonger, bc = kShort + kLonger, ca = 1 + kShort + kLonger;
+    IntrinsicTriangulation expected({0, 1, 2, 0, 2, 1}, {5, 4, 3, 2, 1, 0},
+                                    {ab, bc, ca, ca, bc, ab});
+    expected.makeDelaunay();
+    const IntrinsicTriangulation found =
+        IntrinsicDelaunay(needle.V, needle.F).triangulation(needle.V);
+    ASSERT_EQ(found.sideCount(), expected.sideCount());
+    for (int side = 0; side < expected.sideCount(); ++side) {
+        EXPECT_EQ(found.tail(side), expected.tail(side));
+        EXPECT_NEAR(found.cotangent(side) / expected.cotangent(side), 1.0, 1e-6);
+    }
+}
+
 TEST(IntrinsicDelaunay, TakesOneCopyOfAClosedOrientedSurfaceAndTwoOfAnyOther) {
     const Mesh blob = testing::blob(), sheet = testing::rectangle(1, 1, 3, 3);
     const auto sidesOfCover = [](const Mesh& mesh) {

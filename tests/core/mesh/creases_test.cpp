@@ -96,5 +96,30 @@ TEST(Creases, AreNotWhereASheetHasTwoSides) {
     EXPECT_EQ(count(creaseVertices(mesh.V, F, 40.0)), 24);  // the rim, where the sides meet
 }
 
+/// Vertices along sharp edges that move by a distance, among 99 others that move by 1.
+RoundedCreases roundedBy(double distance, Index count) {
+    std::vector<bool> along(static_cast<std::size_t>(count + 99), false);
+    std::fill_n(along.begin(), count, true);
+    Vertices displacement = Vertices::Zero(count + 99, 3);
+    displacement.col(1).setOnes();
+    displacement.col(1).head(count).setConstant(distance);
+    return roundedCreases(along, displacement);
+}
+
+TEST(RoundedCreases, AreThoseThatMovedThirtyTimesAsFarAsTheRest) {
+    EXPECT_EQ(roundedBy(29.9, 10).vertices, 0);
+    EXPECT_EQ(roundedBy(30.1, 10).vertices, 10);
+    EXPECT_DOUBLE_EQ(roundedBy(30.1, 10).largest, 30.1);
+    EXPECT_EQ(roundedBy(30.1, 9).vertices, 0);  // too few to be the edges of a part
+    // Half of the rest decides, however far the others move.
+    std::vector<bool> along(60, false);
+    std::fill_n(along.begin(), 20, true);
+    Vertices displacement = Vertices::Zero(60, 3);
+    displacement.col(0).head(20).setConstant(40.0);
+    displacement.col(0).segment(20, 21).setOnes();
+    displacement.col(0).tail(19).setConstant(1000.0);
+    EXPECT_EQ(roundedCreases(along, displacement).vertices, 20);
+}
+
 }  // namespace
 }  // namespace spectral

@@ -67,6 +67,7 @@ def test_eigenvalues_and_harmonics_agree_with_scipy(sample_name: str, decimated:
     assert gaps > 1e-5, "equal eigenvalues: their vectors cannot be compared one by one"
     overlap = np.abs(np.sum(Phi * d[:, None] * basis, axis=0))
     np.testing.assert_allclose(overlap, 1, rtol=0, atol=1e-7)
+    assert (basis.max(axis=0) > (1 - 1e-6) * np.abs(basis).max(axis=0)).all(), "of definite signs"
 
 
 @pytest.mark.parametrize("laplacian", ["cotangent", "intrinsic delaunay"])
