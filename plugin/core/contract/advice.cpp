@@ -1,7 +1,6 @@
 #include "core/contract/advice.h"
 
-#include <iomanip>
-#include <sstream>
+#include "core/contract/number_text.h"
 
 namespace spectral {
 
@@ -158,10 +157,9 @@ std::string advice(const Error& error, const Filter& filter, const Values& given
 }
 
 Warning accuracyWarning(double accuracy, double errorEstimate) {
-    std::ostringstream text;
-    text << std::setprecision(2) << "the requested relative accuracy of " << accuracy
-         << " was not reached, the estimated error is " << errorEstimate;
-    return {WarningCode::Accuracy, text.str()};
+    return {WarningCode::Accuracy, "the requested relative accuracy of " + numberText(accuracy, 2) +
+                                       " was not reached, the estimated error is " +
+                                       numberText(errorEstimate, 2)};
 }
 
 Warning accuracyWarning(double accuracy, double errorEstimate, FilterType type) {
@@ -177,13 +175,12 @@ Warnings residualWarnings(const Eigen::VectorXd& residuals) {
     constexpr double kAccurate = 1e-6;
     Eigen::Index worst = 0;
     if (residuals.size() == 0 || residuals.maxCoeff(&worst) <= kAccurate) return {};
-    std::ostringstream text;
-    text << std::setprecision(2) << "the relative residual of "
-         << (residuals.array() > kAccurate).count() << " of " << residuals.size()
-         << " harmonics is above " << kAccurate << ", at most " << residuals[worst] << " (number "
-         << worst << "): the mesh has needle triangles, or parts far away. To fix this, "
-         << kRemesh;
-    return {{WarningCode::HarmonicResiduals, text.str()}};
+    return {{WarningCode::HarmonicResiduals,
+             "the relative residual of " + std::to_string((residuals.array() > kAccurate).count()) +
+                 " of " + std::to_string(residuals.size()) + " harmonics is above " +
+                 textOf(kAccurate) + ", at most " + numberText(residuals[worst], 2) + " (number " +
+                 std::to_string(worst) +
+                 "): the mesh has needle triangles, or parts far away. To fix this, " + kRemesh}};
 }
 
 }  // namespace spectral

@@ -124,10 +124,7 @@ Entries<DenoiseResult> denoiseEntries() {
 
 /// What was chosen instead of the whole displacement.
 std::string strengthText(double strength) {
-    if (strength == 1.0) return "";
-    std::ostringstream text;
-    text << ", times " << strength;
-    return text.str();
+    return strength == 1.0 ? "" : ", times " + textOf(strength);
 }
 
 std::string removedText(const DenoiseOptions& options, const DenoiseResult& result) {

@@ -11,6 +11,7 @@
 #include "core/contract/common_fields.h"
 #include "core/contract/filters.h"
 #include "core/contract/fractional_report.h"
+#include "core/contract/number_text.h"
 #include "core/contract/surface_report.h"
 #include "core/filter/equalizer_bands.h"
 #include "core/filter/fractional_filter.h"
@@ -37,13 +38,6 @@ std::string gainName(std::size_t i) { return "gain_" + std::to_string(kEqualizer
 
 double smallestSizeOf(const MeshLengths& mesh) {
     return defaultSmallestSize(mesh.meanEdge, mesh.surfaceDiagonal);
-}
-
-/// "0.24 (12 %)": a length, also as a percentage of the diagonal.
-std::string lengthAndPercentage(double length, double diagonal) {
-    std::ostringstream text;
-    text << std::setprecision(3) << length << " (" << 100.0 * length / diagonal << " %)";
-    return text.str();
 }
 
 Fields<EqualizerCall> equalizerFields() {
@@ -106,7 +100,7 @@ std::string changesText(const EqualizerCall& call, double diagonal) {
     for (std::size_t i = 0; i < call.gains.size(); ++i)
         if (call.gains[i] != 1.0)
             text << std::exchange(before, ", of ")
-                 << lengthAndPercentage(kEqualizerTimes[i] * call.smallestSize, diagonal) << " x "
+                 << lengthText(kEqualizerTimes[i] * call.smallestSize, 3, diagonal) << " x "
                  << call.gains[i];
     return text.str();
 }
@@ -122,13 +116,12 @@ FilterResult withoutTolerance(FilterResult result) {
 Warnings partingWarnings(const FilterInput& input, const MeshLengths& mesh, const Vertices& moved) {
     const Parting parting = partingOf(input.V, input.F, moved, mesh.meanEdge);
     if (parting.components == 0) return {};
-    std::ostringstream text;
-    text << parting.components << " of " << parting.all << " components "
-         << (parting.components == 1 ? "moves" : "move") << " up to "
-         << lengthAndPercentage(parting.distance, mesh.diagonal)
-         << " away from another that it touched, since each keeps its centre: choose gains closer "
-            "to 1, or select the region to be filtered";
-    return {{WarningCode::PartedComponents, text.str()}};
+    return {{WarningCode::PartedComponents,
+             std::to_string(parting.components) + " of " + std::to_string(parting.all) +
+                 " components " + (parting.components == 1 ? "moves" : "move") + " up to " +
+                 lengthText(parting.distance, 3, mesh.diagonal) +
+                 " away from another that it touched, since each keeps its centre: choose gains "
+                 "closer to 1, or select the region to be filtered"}};
 }
 
 FilterOutput run(const FilterInput& input, const MeshLengths& mesh, const Values& given,
@@ -221,7 +214,7 @@ FilterOutput preview(const FilterInput& input, const MeshLengths& mesh, const Va
 }  // namespace
 
 std::string equalizerLabel(std::size_t i, double smallestSize, double diagonal) {
-    return "Details of " + lengthAndPercentage(kEqualizerTimes[i] * smallestSize, diagonal);
+    return "Details of " + lengthText(kEqualizerTimes[i] * smallestSize, 3, diagonal);
 }
 
 Filter equalizerContract() {

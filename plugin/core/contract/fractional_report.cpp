@@ -6,6 +6,7 @@
 #include <sstream>
 
 #include "core/contract/advice.h"
+#include "core/contract/number_text.h"
 #include "core/contract/surface_report.h"
 #include "core/contract/transfer_fields.h"
 #include "core/filter/automatic_steps.h"
@@ -90,19 +91,14 @@ constexpr double kNoticeable = 0.003;
 
 /// A share in percent, to two or three digits.
 std::string percentOf(double share) {
-    std::ostringstream text;
-    text << std::setprecision(share < 0.1 ? 2 : 3) << 100.0 * share << " %";
-    return text.str();
+    return numberText(100.0 * share, share < 0.1 ? 2 : 3) + " %";
 }
 
 /// "10", or "automatic, 2 in pass 2": one automatic step is not one of the paper's.
 std::string stepsText(const FilterResult& result) {
-    std::ostringstream text;
-    if (result.passes > 0)
-        text << "automatic, " << result.steps << " in pass " << result.passes;
-    else
-        text << result.steps;
-    return text.str();
+    const std::string steps = std::to_string(result.steps);
+    if (result.passes == 0) return steps;
+    return "automatic, " + steps + " in pass " + std::to_string(result.passes);
 }
 
 /// Whether the surface is within the tolerance, but for parts that collapse.
@@ -143,13 +139,12 @@ std::string headline(const FilterOptions& options, const FilterResult& result, d
 
 /// @param last  frequency of the highest harmonic.
 Warning cutoffWarning(const FilterResult& result, double last) {
-    std::ostringstream text;
-    text << std::setprecision(4) << "the " << result.eigenvalues.size()
-         << " harmonics end at features of " << 2.0 * kPi / last << ", above the feature size of "
-         << result.featureSize
-         << ": details between these sizes are treated like all finer ones. Choose a larger "
-            "|feature_size|, a larger |basis_size|, or |spectrum = full|";
-    return {WarningCode::FewHarmonics, text.str()};
+    return {WarningCode::FewHarmonics,
+            "the " + std::to_string(result.eigenvalues.size()) + " harmonics end at features of " +
+                numberText(2.0 * kPi / last, 4) + ", above the feature size of " +
+                numberText(result.featureSize, 4) +
+                ": details between these sizes are treated like all finer ones. Choose a larger "
+                "|feature_size|, a larger |basis_size|, or |spectrum = full|"};
 }
 
 /// The settings with which parts of a surface neither collapse nor grow as fast.
@@ -186,14 +181,13 @@ Warning foldWarning(const FilterOptions& options, const FilterResult& result) {
 }
 
 Warning toleranceWarning(const FilterOptions& options, const FilterResult& result) {
-    std::ostringstream text;
-    text << std::setprecision(2) << "the tolerance of " << options.tolerance
-         << " was not reached on " << percentOf(result.singularPart) << " of the surface, "
-         << (isAccurateElsewhere(options, result)
-                 ? "most of which collapses; elsewhere the estimated error is "
-                 : "where the estimated error is at least ")
-         << result.stepError << ": " << convergingFilter(options);
-    return {WarningCode::Tolerance, text.str()};
+    return {WarningCode::Tolerance,
+            "the tolerance of " + numberText(options.tolerance, 2) + " was not reached on " +
+                percentOf(result.singularPart) + " of the surface, " +
+                (isAccurateElsewhere(options, result)
+                     ? "most of which collapses; elsewhere the estimated error is "
+                     : "where the estimated error is at least ") +
+                numberText(result.stepError, 2) + ": " + convergingFilter(options)};
 }
 
 /// Gains above 1 at the largest sizes are meant for details by those who set them.
@@ -201,10 +195,9 @@ Warnings scalingWarnings(const FilterOptions& options, const FilterResult& resul
     constexpr double kScaling = 1.01;
     const double gain = TransferFunction(options.transferFunction, result.cutoffFrequency)(0.0);
     if (!(gain > kScaling)) return {};
-    std::ostringstream text;
-    text << std::setprecision(3) << "the gain of the largest details is " << gain
-         << ", which scales the whole object. Choose 1 to keep its size";
-    return {{WarningCode::WholeScaled, text.str()}};
+    return {{WarningCode::WholeScaled,
+             "the gain of the largest details is " + numberText(gain, 3) +
+                 ", which scales the whole object. Choose 1 to keep its size"}};
 }
 
 Warning volumeWarning(const FilterResult& result) {
@@ -219,28 +212,26 @@ Warning volumeWarning(const FilterResult& result) {
 
 /// Only a warning, as scripts use one feature size for many meshes.
 Warning edgeWarning(const FilterResult& result) {
-    std::ostringstream text;
-    text << std::setprecision(3) << "the mesh has no details of the feature size "
-         << result.featureSize << ", which is below its mean edge length of " << result.meanEdge
-         << ". Choose at least two edges, " << 2.0 * result.meanEdge
-         << "; if the model has few triangles, {apply 'Subdivision Surfaces: Midpoint'|subdivide "
-            "them} first";
-    return {WarningCode::BelowEdges, text.str()};
+    return {WarningCode::BelowEdges,
+            "the mesh has no details of the feature size " + numberText(result.featureSize, 3) +
+                ", which is below its mean edge length of " + numberText(result.meanEdge, 3) +
+                ". Choose at least two edges, " + numberText(2.0 * result.meanEdge, 3) +
+                "; if the model has few triangles, {apply 'Subdivision Surfaces: Midpoint'|"
+                "subdivide them} first"};
 }
 
 Warning shrinkingWarning(const FilterResult& result, double diagonal) {
     const double half = 0.5 * result.featureSize;
-    std::ostringstream text;
-    text
-        << percentOf(result.shrunkenPart) << std::setprecision(2)
-        << " of the surface shrinks to lines or points, since it is thin compared with the feature "
-           "size"
-        << (result.toleranceReached
-                ? ""
-                : ", and on " + percentOf(result.singularPart) + " the tolerance was not reached")
-        << ". Try |feature_size = " << half << "| (" << 100.0 * half / diagonal
-        << " % of the diagonal), or filter a selection without these parts";
-    return {WarningCode::ThinParts, text.str()};
+    return {WarningCode::ThinParts,
+            percentOf(result.shrunkenPart) +
+                " of the surface shrinks to lines or points, since it is thin compared with the "
+                "feature size" +
+                (result.toleranceReached ? ""
+                                         : ", and on " + percentOf(result.singularPart) +
+                                               " the tolerance was not reached") +
+                ". Try |feature_size = " + numberText(half, 2) + "| (" +
+                numberText(100.0 * half / diagonal, 2) +
+                " % of the diagonal), or filter a selection without these parts"};
 }
 
 double lastFrequency(const FilterResult& result) {

@@ -10,6 +10,7 @@
 #include "core/contract/common_fields.h"
 #include "core/contract/filters.h"
 #include "core/contract/noise_text.h"
+#include "core/contract/number_text.h"
 #include "core/contract/report.h"
 #include "core/contract/surface_report.h"
 
@@ -83,14 +84,6 @@ Entries<GeometrySpectrum> spectrumEntries() {
     };
 }
 
-/// A length, also as a percentage of the diagonal.
-std::string withPercent(double length, double diagonal) {
-    std::ostringstream text;
-    text << std::setprecision(4) << length << " (" << std::setprecision(3)
-         << 100.0 * length / diagonal << " %)";
-    return text.str();
-}
-
 /// A bar for an amplitude, 12 cells at `largest`, three less for each factor of ten: bars begin at
 /// the left edge, so that they are a chart in MeshLab's log, too, whose letters differ in width.
 std::string barOf(double amplitude, double largest) {
@@ -103,7 +96,7 @@ std::string barOf(double amplitude, double largest) {
 }
 
 std::string textOf(const GeometrySpectrum& spectrum, const std::string& noise) {
-    const auto size = [&](double length) { return withPercent(length, spectrum.diagonal); };
+    const auto size = [&](double length) { return lengthText(length, 4, spectrum.diagonal); };
     std::ostringstream text;
     text << "Geometry Spectrum: to smooth, try feature size "
          << size(spectrum.noiseFeatureSize > 0.0
@@ -131,11 +124,10 @@ std::string textOf(const GeometrySpectrum& spectrum, const std::string& noise) {
 Warnings warningsOf(const GeometrySpectrum& spectrum) {
     constexpr double kAccurate = 0.01;
     if (spectrum.mismatch <= kAccurate) return {};
-    std::ostringstream text;
-    text << std::setprecision(3) << "up to " << 100.0 * std::min(1.0, spectrum.mismatch)
-         << " % of the energy may belong to other sizes: the mesh has needle triangles, or parts "
-            "far away";
-    return {{WarningCode::MixedSizes, text.str()}};
+    return {{WarningCode::MixedSizes,
+             "up to " + numberText(100.0 * std::min(1.0, spectrum.mismatch), 3) +
+                 " % of the energy may belong to other sizes: the mesh has needle triangles, or "
+                 "parts far away"}};
 }
 
 FilterOutput run(const FilterInput& input, const MeshLengths& mesh, const Values& given,

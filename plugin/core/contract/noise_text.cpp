@@ -2,18 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iomanip>
-#include <sstream>
+
+#include "core/contract/number_text.h"
 
 namespace spectral {
 
 namespace {
-
-std::string numberText(double value, int digits) {
-    std::ostringstream text;
-    text << std::setprecision(digits) << value;
-    return text.str();
-}
 
 std::string voxelsText(const Eigen::RowVector3d& voxel) {
     return "voxel steps of " + numberText(voxel[0], 3) + " x " + numberText(voxel[1], 3) + " x " +

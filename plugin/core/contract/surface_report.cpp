@@ -6,6 +6,7 @@
 #include <sstream>
 #include <utility>
 
+#include "core/contract/number_text.h"
 #include "core/mesh/periodic.h"
 
 namespace spectral {
@@ -20,9 +21,7 @@ std::string movementText(const std::string& done, double mean, double most, doub
 
 std::string limitText(double share) {
     if (share == 0.0) return "";
-    std::ostringstream text;
-    text << std::setprecision(2) << "; bound reached at " << 100.0 * share << " % of the surface";
-    return text.str();
+    return "; bound reached at " + numberText(100.0 * share, 2) + " % of the surface";
 }
 
 std::string surfaceText(const SurfaceCounts& counts, const char* fixed) {
@@ -39,9 +38,7 @@ std::string surfaceText(const SurfaceCounts& counts, const char* fixed) {
 
 std::string volumeText(bool hasVolume, double before, double after) {
     if (!hasVolume) return "volume: none, as the surface is open or not consistently oriented";
-    std::ostringstream text;
-    text << std::setprecision(6) << "volume: " << before << " -> " << after;
-    return text.str();
+    return "volume: " + numberText(before, 6) + " -> " + numberText(after, 6);
 }
 
 bool isAllFixed(const SurfaceCounts& counts, Index n) {
@@ -80,14 +77,13 @@ Warnings periodicWarnings(const Vertices& before, const Faces& F, const Vertices
     const auto pairs = periodicPairs(before, F);
     const double mismatch = largestMismatch(pairs, before, after);
     if (!(mismatch > kRoundOff * boundingBoxDiagonal(before))) return {};
-    std::ostringstream text;
-    text
-        << std::setprecision(3) << pairs.size()
-        << " pairs of vertices on opposite sides matched by a translation, as those of a periodic "
-           "cell, and are now apart by up to "
-        << mismatch
-        << ": choose |boundary = fixed|, or filter 3 x 3 x 3 copies and keep the one in the middle";
-    return {{WarningCode::PeriodicCell, text.str()}};
+    return {{WarningCode::PeriodicCell,
+             std::to_string(pairs.size()) +
+                 " pairs of vertices on opposite sides matched by a translation, as those of a "
+                 "periodic cell, and are now apart by up to " +
+                 numberText(mismatch, 3) +
+                 ": choose |boundary = fixed|, or filter 3 x 3 x 3 copies and keep the one in the "
+                 "middle"}};
 }
 
 std::string selectionText(const std::vector<bool>& selected) {

@@ -11,6 +11,7 @@
 #include "core/contract/advice.h"
 #include "core/contract/common_fields.h"
 #include "core/contract/filters.h"
+#include "core/contract/number_text.h"
 #include "core/contract/report.h"
 #include "core/contract/surface_report.h"
 #include "core/mesh/measures.h"
@@ -155,12 +156,6 @@ std::string textOf(const Measured& texture) {
     return text.str();
 }
 
-std::string shortText(double number) {
-    std::ostringstream text;
-    text << std::setprecision(3) << number;
-    return text.str();
-}
-
 /// Tells that what is left out near boundaries is another surface than what is measured.
 std::string leftOutText(const Measured& texture) {
     constexpr double kAlike = 1.5;  // the end of a low-pass changes heights by a third at most
@@ -168,7 +163,7 @@ std::string leftOutText(const Measured& texture) {
     if (texture.leftOutSq == 0.0 || most <= kAlike * std::min(texture.leftOutSq, texture.Sq))
         return {};
     return "the surface near boundaries is left out, and has other heights: its Sq is " +
-           shortText(texture.leftOutSq) + ", that of the rest " + shortText(texture.Sq) +
+           numberText(texture.leftOutSq, 3) + ", that of the rest " + numberText(texture.Sq, 3) +
            ". With a smaller |waviness| more of it is measured";
 }
 
@@ -207,7 +202,7 @@ FilterOutput run(const FilterInput& input, const MeshLengths& mesh, const Values
     if (!isShape(call.form) && texture.Sdq > kSteep)
         output.warnings.push_back(
             {WarningCode::SteepTexture, "slopes of the texture are steep, Sdq " +
-                                            shortText(texture.Sdq) +
+                                            numberText(texture.Sdq, 3) +
                                             ": on a free shape they make heights 2 % too low, or "
                                             "more. Choose |form| plane, sphere or cylinder if "
                                             "the surface is one"});
@@ -218,7 +213,7 @@ FilterOutput run(const FilterInput& input, const MeshLengths& mesh, const Values
     constexpr double kFlat = 0.04;
     if (texture.flat > kFlat)
         output.warnings.push_back({WarningCode::FlatTexture,
-                                   shortText(100.0 * texture.flat) +
+                                   numberText(100.0 * texture.flat, 3) +
                                        " % of the area has no texture: its heights are below a "
                                        "thousandth of Sq, which lowers all means. Select what is "
                                        "rough, such as where nz > 0.5"});
