@@ -1,9 +1,9 @@
 """The program of the child process: `python -m meshlab_spectral.child`.
 
-It reads jobs from standard input, one JSON object per line, and answers each on standard output
-with JSON lines: {"ready": true} once, then {"stage": ...} as the work proceeds, and {"report": ...}
-or {"error": ...} at its end.
-MeshLab's own output goes to standard error.
+It reads jobs from standard input, one per line, and answers each on standard output with JSON
+lines: {"ready": true} once, then {"stage": ...} as the work proceeds, and {"report": ...} or
+{"error": ...} at its end. Jobs and errors are pickled, see `workers.process`. MeshLab's own output
+goes to standard error.
 
 It ends at the end of its input, whatever MeshLab is doing: it never outlives its parent.
 """
@@ -18,61 +18,42 @@ import signal
 import sys
 import threading
 import traceback
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-from meshlab_spectral import _core, errors
-from meshlab_spectral.files.comparison import compare
-from meshlab_spectral.files.filtering import (
-    filter_to_scratch,
-    joined_to_scratches,
-    script_to_scratch,
-)
+from meshlab_spectral import _core
+from meshlab_spectral.errors import FilterError, MeshFileError, SpectralError
+from meshlab_spectral.files.filtering import filter_to_scratch, joined_to_scratches
 from meshlab_spectral.files.intent import intent_of
-from meshlab_spectral.files.measures import basis_to_scratch, mesh_info, spectrum_of, texture_of
-from meshlab_spectral.files.meshes import StageCallback
-from meshlab_spectral.files.request import Request
+from meshlab_spectral.files.measures import (
+    basis_to_scratch,
+    comparison_of,
+    mesh_info,
+    spectrum_of,
+    texture_of,
+)
 from meshlab_spectral.files.whole_files import file_trouble, is_disk_full
-from meshlab_spectral.filters.tables import TABLES
 from meshlab_spectral.formats.budget import guard_process
 from meshlab_spectral.plugin.limits import name_memory_limit, set_memory_limit
 from meshlab_spectral.tiles.tile import filter_tile
+from meshlab_spectral.workers.process import as_text, from_text
 
-
-def _report_of(job: dict[str, Any], on_stage: StageCallback) -> dict[str, Any]:
-    """Do a job, and return its report."""
-    task = job["task"]
-    if task == "tile":
-        return filter_tile(Path(job["folder"]), job["tile"], job["decided"], on_stage)
-    if task == "joined":
-        sources, scratches = (list(map(Path, job[name])) for name in ("sources", "scratches"))
-        table = TABLES[job["filter"]]
-        return joined_to_scratches(sources, scratches, table.from_dict(job["options"]), on_stage)
-    if task == "compare":
-        on_stage("reading", None)
-        found = compare(job["source"], job["other"], max_distance=job["max_distance"])
-        return _sent(found if job["whole"] else found.without_arrays, job)
-    request = Request.of_job(job)
-    if task == "texture":
-        return _sent(texture_of(request, on_stage), job)
-    if task == "spectrum":
-        return spectrum_of(request, on_stage)
-    if task == "info":
-        return mesh_info(request.source, on_stage, request.mesh)
-    if "target" in job:
-        return intent_of(request, Path(job["target"]), on_stage)
-    scratch, verbose = Path(job["scratch"]), job.get("verbose", True)
-    if task == "basis":
-        return basis_to_scratch(request, scratch, on_stage)
-    if task == "script":
-        return script_to_scratch(request.source, scratch, job["script"], on_stage, verbose)
-    return filter_to_scratch(request, scratch, on_stage, verbose)
-
-
-def _sent(result: object, job: dict[str, Any]) -> dict[str, Any]:
-    """Hand over a result with arrays in the file of a job, in place of a report."""
-    Path(job["result"]).write_bytes(pickle.dumps(result))
-    return {}
+# What a job may call: each takes the entries of the job by name, and `on_stage`.
+_CALLS: dict[str, Callable[..., Any]] = {
+    one.__name__: one
+    for one in (
+        basis_to_scratch,
+        comparison_of,
+        filter_tile,
+        filter_to_scratch,
+        intent_of,
+        joined_to_scratches,
+        mesh_info,
+        spectrum_of,
+        texture_of,
+    )
+}
 
 
 def _read(jobs: queue.SimpleQueue[str]) -> None:
@@ -86,26 +67,20 @@ def _read(jobs: queue.SimpleQueue[str]) -> None:
     os._exit(0)
 
 
-def _described(error: Exception, job: dict[str, Any]) -> dict[str, Any]:
-    """Describe an error of a job by its class, message and code."""
-    if isinstance(error, errors.SpectralError):
-        described: dict[str, Any] = {"error": type(error).__name__, "message": str(error)}
-        if isinstance(error, errors.FilterError):
-            described |= {"code": error.code, "limit": error.limit}
-        elif isinstance(error, errors.MeshFileError):
-            described["code"] = error.code
-        return described
+def _told(error: Exception, job: dict[str, Any]) -> SpectralError:
+    """Return an error of a job as one of this package's."""
+    if isinstance(error, SpectralError):
+        return error
     if isinstance(error, OSError) and error.strerror:
         code = "disk_full" if is_disk_full(error) else "not_written"
-        name = Path(job.get("scratch") or job.get("source", "a file")).name
-        return {"error": "MeshFileError", "message": file_trouble(error, name), "code": code}
-    message = f"unexpected error: {error}; please report it"
+        source = getattr(job.get("request"), "source", "a file")
+        return MeshFileError(file_trouble(error, Path(job.get("scratch", source)).name), code)
     if isinstance(error, MemoryError):
-        message = (
+        return FilterError(
             "the mesh needs more memory than available; if it is not that large, the file is "
             "damaged and declares more than it holds"
         )
-    return {"error": "FilterError", "message": message}
+    return FilterError(f"unexpected error: {error}; please report it")
 
 
 def _main() -> None:
@@ -128,13 +103,18 @@ def _main() -> None:
     job: dict[str, Any] = {}
     while True:
         try:
-            job = json.loads(jobs.get())
-            set_memory_limit(job.get("memory"))
+            job = from_text(jobs.get())
+            memory, file, call = (job.pop(name, None) for name in ("memory", "result", "call"))
+            set_memory_limit(memory)
             name_memory_limit("the memory limit")  # the parent says which
-            _core.set_memory_limit(job.get("memory") or 0)
-            answer(report=_report_of(job, on_stage))
+            _core.set_memory_limit(memory or 0)
+            report = _CALLS[call](**job, on_stage=on_stage)
+            if file is not None:  # for what has arrays
+                file.write_bytes(pickle.dumps(report))
+            answer(report=report if file is None else {})
         except Exception as error:
-            answer(**_described(error, job), traceback=traceback.format_exc().strip())
+            told = as_text(_told(error, job))
+            answer(error=told, traceback=traceback.format_exc().strip())
 
 
 if __name__ == "__main__":

@@ -10,7 +10,6 @@ import sys
 import tempfile
 import threading
 import time
-from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from typing import Any
@@ -32,9 +31,10 @@ from meshlab_spectral import (
     filter_mesh,
 )
 from meshlab_spectral.workers.process import Answer, MeshLabProcess
+from shared_types import Decimated
 
 
-def test_filter_mesh_is_the_filter(decimated: Callable[..., tuple[np.ndarray, np.ndarray]]) -> None:
+def test_filter_mesh_is_the_filter(decimated: Decimated) -> None:
     V, F = decimated("cow.obj", 2000)
     expected, report = filter_arrays(V, F, feature_size=percent(8), steps=2)
     filtered, same = filter_mesh(V, F, feature_size="8%", steps=2)
@@ -110,7 +110,7 @@ def test_a_file_that_kills_its_process_again_and_again_fails_alone(
 
     def run_and_die(process: MeshLabProcess, job: dict[str, Any], **options: Any) -> Answer:
         def kill(stage: str, fraction: float | None) -> None:
-            if job["source"] == str(inputs[0]):
+            if job["request"].source == inputs[0]:
                 os.kill(process.pid, signal.SIGKILL)
 
         return run(process, job, kill, **options)

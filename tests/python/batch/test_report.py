@@ -17,12 +17,12 @@ from meshlab_spectral.batch.jobs import FileResult, Job
 from meshlab_spectral.batch.report import Report, check_report, read_report
 from meshlab_spectral.batch.resume import done_records, proved_done
 from meshlab_spectral.batch.storage import digest
+from meshlab_spectral.files.request import Request
 
 VERSIONS = {"meshlab_spectral": "1", "core": "2", "pymeshlab": "3", "python": "4"}
 AWKWARD = 'a "\\\n\r\té\u2028\udcff{}'
 RECORDS = st.lists(
-    st.dictionaries(st.sampled_from(["a", "b", "c"]), st.integers() | st.text(AWKWARD)),
-    max_size=5,
+    st.dictionaries(st.sampled_from(["a", "b", "c"]), st.integers() | st.text(AWKWARD)), max_size=5
 )
 REUSED_FOLDER = settings(suppress_health_check=[HealthCheck.function_scoped_fixture])
 
@@ -148,7 +148,7 @@ def done(tmp_path: Path) -> tuple[Job, dict[str, Any]]:
     source.write_bytes(b"input")
     target.write_bytes(b"output")
     options = {"feature_size": "2%", "steps": 3}
-    job = Job(str(source), str(target), "out.ply", {"task": "filter"}, options)
+    job = Job(str(source), str(target), "out.ply", Request(Path()), options)
     result = FileResult(
         outcome="filtered",
         input=job.source,

@@ -18,6 +18,7 @@ from meshlab_spectral.batch import storage
 from meshlab_spectral.batch.jobs import Job
 from meshlab_spectral.batch.task import run_job
 from meshlab_spectral.errors import BatchError
+from meshlab_spectral.files.request import Request
 from meshlab_spectral.workers.process import NO_LIMITS, JobLimits, MeshLabProcess
 from meshlab_spectral.workers.processes import Processes, ProcessesEndedError
 
@@ -30,9 +31,9 @@ def processes(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Processes]:
 
 
 def job_of(source: object, target: object, **more: Any) -> Job:
-    options = FilterOptions(steps=1).as_dict()
-    work = {"task": "filter", "options": options}
-    return Job(str(source), str(target), "name", work, options, **more)
+    options = FilterOptions(steps=1)
+    request = Request(Path(), options)
+    return Job(str(source), str(target), "name", request, options.as_dict(), **more)
 
 
 def test_a_filtered_file_is_described_completely(
@@ -111,11 +112,9 @@ def test_a_mesh_that_kills_its_process_is_tried_again_once(
 
     run = MeshLabProcess.run
     monkeypatch.setattr(MeshLabProcess, "run", run_and_kill)
-    long = FilterOptions(steps=1000).as_dict()
-    work = {"task": "filter", "options": long}
-    result = run_job(
-        processes, Job(str(samples / "bunny.obj"), str(existing), "result.ply", work, long)
-    )
+    long = Request(Path(), FilterOptions(steps=1000))
+    files = str(samples / "bunny.obj"), str(existing)
+    result = run_job(processes, Job(*files, "result.ply", long, {}))
     assert result.outcome == "failed"
     assert result.attempts == 2
     assert len(set(killed)) == 2

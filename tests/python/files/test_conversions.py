@@ -16,8 +16,9 @@ import pyvista
 from helpers import filter_file
 from meshlab_spectral import DenoiseOptions, FilterOptions
 from meshlab_spectral.errors import FormatError
-from meshlab_spectral.files.filtering import script_to_scratch
+from meshlab_spectral.files.filtering import filter_to_scratch
 from meshlab_spectral.files.meshes import load_arrays
+from meshlab_spectral.files.request import Request
 from meshlab_spectral.files.whole_files import writing_whole
 from numpy.typing import NDArray
 from plyfile import PlyData, PlyElement
@@ -88,7 +89,7 @@ def test_a_script_gets_the_quality_of_the_file(tmp_path: Path) -> None:
     source, target = tmp_path / "in.ply", tmp_path / "out.ply"
     write_with_quality(source, "confidence", "f4", text=False)
     with writing_whole(target) as scratch:
-        script_to_scratch(source, scratch, SCRIPT, lambda *stage: None)
+        filter_to_scratch(Request(source, script=SCRIPT), scratch, lambda *stage: None)
     expected = 2 * PlyData.read(source)["vertex"]["confidence"]
     np.testing.assert_allclose(PlyData.read(target)["vertex"]["quality"], expected, rtol=1e-6)
 

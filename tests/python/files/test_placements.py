@@ -14,15 +14,12 @@ from helpers import filter_file
 from meshlab_spectral import DenoiseOptions, FilterOptions, compare
 from meshlab_spectral.files.measures import mesh_info
 from meshlab_spectral.files.meshes import load_arrays
+from meshlab_spectral.files.request import Request
 from meshlab_spectral.filters.option_types import Options
 from numpy.typing import NDArray
 
 SMOOTH = FilterOptions(feature_size="30%")
-SHIFT, MIRROR, HIDDEN = (
-    np.eye(4),
-    np.diag([1.0, 1.0, -1.0, 1.0]),
-    np.diag([0.0, 0.0, 0.0, 1.0]),
-)
+SHIFT, MIRROR, HIDDEN = (np.eye(4), np.diag([1.0, 1.0, -1.0, 1.0]), np.diag([0.0, 0.0, 0.0, 1.0]))
 SHIFT[0, 3], MIRROR[1, 3] = 5, 7
 
 
@@ -88,7 +85,9 @@ def test_what_is_hidden_by_a_scale_of_zero_is_not_written(tmp_path: Path) -> Non
 
 def test_the_description_says_that_it_is_of_one_place(tmp_path: Path) -> None:
     source = scene(tmp_path / "in.glb", SHIFT)
-    warnings = mesh_info(source, lambda *stage: None)["warnings"]
+    warnings = mesh_info(Request(source), lambda *stage: None)["warnings"]
     assert any("ball is placed 2 times: it is described once" in one for one in warnings)
     alone = scene(tmp_path / "alone.glb")
-    assert not any("placed" in one for one in mesh_info(alone, lambda *stage: None)["warnings"])
+    assert not any(
+        "placed" in one for one in mesh_info(Request(alone), lambda *stage: None)["warnings"]
+    )

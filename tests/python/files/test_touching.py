@@ -13,6 +13,7 @@ import pytest
 from helpers import filter_file
 from meshlab_spectral import DenoiseOptions, FilterOptions, filter_mesh
 from meshlab_spectral.files.measures import mesh_info
+from meshlab_spectral.files.request import Request
 from meshlab_spectral.filters.option_types import Options
 from meshlab_spectral.formats.opening import open_document
 from numpy.typing import NDArray
@@ -161,7 +162,7 @@ def test_an_stl_with_loose_corners_is_one_surface(round_off: float, tmp_path: Pa
     (part,) = open_document(tmp_path / "in.stl").parts
     assert report["components"] == 1
     assert report["joined_vertices"] == len(part.vertices) - len(V)
-    assert mesh_info(tmp_path / "in.stl", lambda *stage: None)["rims"] == 0
+    assert mesh_info(Request(tmp_path / "in.stl"), lambda *stage: None)["rims"] == 0
     expected, _ = filter_mesh(V, F, SMOOTH)
     after = np.frombuffer((tmp_path / "out.stl").read_bytes(), facets.dtype, offset=84)
     np.testing.assert_allclose(after["corners"], expected[F], atol=10 * round_off * diagonal + 1e-6)

@@ -27,6 +27,7 @@ from meshlab_spectral import (
     shape_dna,
 )
 from meshlab_spectral.errors import MemoryLimitError
+from meshlab_spectral.files.request import Request
 from meshlab_spectral.plugin.limits import (
     MEMORY,
     given_memory_limit,
@@ -34,6 +35,7 @@ from meshlab_spectral.plugin.limits import (
     name_memory_limit,
 )
 from meshlab_spectral.workers.process import JobLimits, MeshLabProcess
+from shared_types import Decimated
 
 MEBIBYTE = 2**20
 
@@ -88,9 +90,7 @@ CALLS: dict[str, Call] = {
 
 @pytest.mark.parametrize("call", CALLS.values(), ids=CALLS)
 def test_every_function_keeps_to_the_limit(
-    call: Call,
-    decimated: Callable[..., tuple[np.ndarray, np.ndarray]],
-    monkeypatch: pytest.MonkeyPatch,
+    call: Call, decimated: Decimated, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     V, F = decimated("cow.obj", 2000)
     set_memory_limit(1)
@@ -109,42 +109,39 @@ def test_every_function_keeps_to_the_limit(
         assert given_memory_limit() == size
 
 
+def job(source: Path, folder: Path) -> dict[str, Any]:
+    request = Request(source, FilterOptions(steps=1))
+    return {"call": "filter_to_scratch", "request": request, "scratch": folder / "out.ply"}
+
+
 @pytest.mark.parametrize("is_set", [True, False], ids=["set", "environment"])
 def test_a_job_without_a_limit_has_that_of_the_environment(
     is_set: bool, samples: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    options = FilterOptions(steps=1).as_dict()
-    files = {"source": str(samples / "cow.obj"), "scratch": str(tmp_path / "out.ply")}
-    job = {"task": "filter", "options": options, **files}
     remedy = (
         "raise set_memory_limit" if is_set else f"raise or unset the environment variable {MEMORY}"
     )
     with MeshLabProcess() as process:
-        process.run(job)
+        process.run(job(samples / "cow.obj", tmp_path))
         limit = process.memory() + MEBIBYTE
         if is_set:
             set_memory_limit(limit)
         else:
             monkeypatch.setenv(MEMORY, str(limit))
         with pytest.raises(MemoryLimitError, match=f"its limit: {remedy};"):
-            process.run(job | {"source": str(samples / "bunny.obj")})
+            process.run(job(samples / "bunny.obj", tmp_path))
     with MeshLabProcess() as process:
         set_memory_limit(None)
-        process.run(job)
+        process.run(job(samples / "cow.obj", tmp_path))
 
 
 @pytest.mark.parametrize("more", [5, 15, 20, 25])  # where reading takes too much, and filtering
 def test_the_limit_of_a_job_is_that_of_the_plugin(more: int, samples: Path, tmp_path: Path) -> None:
-    def job(name: str) -> dict[str, Any]:
-        options = FilterOptions(steps=1).as_dict()
-        files = {"source": str(samples / name), "scratch": str(tmp_path / "out.ply")}
-        return {"task": "filter", "options": options, **files}
-
     with MeshLabProcess() as process:
-        process.run(job("cow.obj"))
+        process.run(job(samples / "cow.obj", tmp_path))
         limit = process.memory() + more * MEBIBYTE
         with pytest.raises(MemoryLimitError, match="raise the memory limit"):
-            process.run(job("bunny.obj"), limits=JobLimits(memory=limit))
+            process.run(job(samples / "bunny.obj", tmp_path), limits=JobLimits(memory=limit))
         assert not (tmp_path / "out.ply.partial").exists()
 
 

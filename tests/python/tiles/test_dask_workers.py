@@ -30,9 +30,7 @@ def _ignore(*_: object) -> None:
 
 
 @pytest.fixture(scope="module")
-def started(
-    tmp_path_factory: pytest.TempPathFactory,
-) -> Iterator[tuple[str, list[psutil.Process]]]:
+def started(tmp_path_factory: pytest.TempPathFactory) -> Iterator[tuple[str, list[psutil.Process]]]:
     """A cluster: its address, and its workers."""
     with dask_cluster(tmp_path_factory.mktemp("cluster")) as (address, (_, *workers)):
         yield address, [psutil.Process(worker.pid) for worker in workers]

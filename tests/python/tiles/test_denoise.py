@@ -59,7 +59,7 @@ def test_tiles_come_as_near_to_the_truth_as_the_whole(kind: str, tmp_path: Path)
     V = bumpy_torus(SIDE, NOISY)[0] if kind == "white" else _with_correlated_noise(truth, F)
     source, whole, tiled = (tmp_path / f"{name}.ply" for name in ("mesh", "whole", "tiled"))
     write_ply(source, V, F, "<f8")
-    filter_to_scratch(Request(source, DenoiseOptions()), whole, _ignore, verbose=False)
+    filter_to_scratch(Request(source, DenoiseOptions(), verbose=False), whole, _ignore)
     report = filter_in_tiles(source, tiled, DenoiseOptions(), _ignore, TILES, _ignore)
     given, as_whole, in_tiles = (
         _degrees(ply.read(path).parts[0].vertices, truth, F) for path in (source, whole, tiled)

@@ -31,7 +31,7 @@ def both(tmp_path: Path) -> Both:
     def run(source: Path, tiles: int, **options: Any) -> tuple[Path, Path, dict[str, Any]]:
         whole, tiled = (tmp_path / f"{name}{source.suffix}" for name in ("whole", "tiled"))
         given = FilterOptions(**options)
-        filter_to_scratch(Request(source, given), whole, _ignore, verbose=False)
+        filter_to_scratch(Request(source, given, verbose=False), whole, _ignore)
         report = filter_in_tiles(source, tiled, given, _ignore, tiles, _ignore)
         assert sorted(tmp_path.iterdir()) == sorted([source, whole, tiled])
         return whole, tiled, report
@@ -48,18 +48,8 @@ def _largest_difference(whole: Path, tiled: Path) -> float:
 
 LOW_PASS: dict[str, Any] = {"feature_size": "6e"}
 BUTTERWORTH = {**LOW_PASS, "response": "butterworth"}
-BAND = {
-    "feature_size": "4e",
-    "filter_type": "band-pass",
-    "stop_gain": 1.0,
-    "pass_gain": 2.0,
-}
-SHARPENING = {
-    "feature_size": "4e",
-    "filter_type": "high-pass",
-    "stop_gain": 1.0,
-    "pass_gain": 1.5,
-}
+BAND = {"feature_size": "4e", "filter_type": "band-pass", "stop_gain": 1.0, "pass_gain": 2.0}
+SHARPENING = {"feature_size": "4e", "filter_type": "high-pass", "stop_gain": 1.0, "pass_gain": 1.5}
 EQUALIZER = {
     "filter_type": "custom",
     "transfer_function": "96e:1, 48e:1, 24e:1, 12e:1, 6e:0.8, 3e:0.5",

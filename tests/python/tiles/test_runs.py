@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import math
 import os
 import re
@@ -29,7 +28,7 @@ from meshlab_spectral.tiles.run import filter_in_tiles
 from meshlab_spectral.tiles.survey import Lengths
 from meshlab_spectral.tiles.tile import filter_tile
 from meshlab_spectral.workers import memory
-from meshlab_spectral.workers.process import MeshLabProcess
+from meshlab_spectral.workers.process import MeshLabProcess, from_text
 from tiled_meshes import bumpy_torus, write_ply
 
 SMALL = FilterOptions(feature_size="6e", passes=1)
@@ -66,10 +65,7 @@ def test_tails_of_a_gaussian_are_known() -> None:
         ({"preserve_volume": True}, "preserve_volume"),
         ({"result": "details"}, "details"),
         ({"filter_type": "high-pass"}, "stop_gain = 1"),
-        (
-            {"filter_type": "custom", "transfer_function": "96e:2, 6e:1"},
-            "gain of the largest",
-        ),
+        ({"filter_type": "custom", "transfer_function": "96e:2, 6e:1"}, "gain of the largest"),
     ],
     ids=lambda value: value if isinstance(value, str) else "",
 )
@@ -206,7 +202,7 @@ def test_a_killed_worker_loses_its_tile_alone(
 
     def send_and_kill(process: MeshLabProcess, line: str) -> None:
         send(process, line)
-        if json.loads(line)["tile"] == 5:
+        if from_text(line)["tile"] == 5:
             os.kill(process.pid, signal.SIGKILL)
 
     target.write_bytes(b"before")

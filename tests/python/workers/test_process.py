@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import os
 import signal
 import subprocess
@@ -20,13 +19,17 @@ from meshlab_spectral.errors import (
     ProcessStartError,
     TimeLimitError,
 )
-from meshlab_spectral.workers.process import JobLimits, MeshLabProcess
+from meshlab_spectral.files.request import Request
+from meshlab_spectral.workers.process import JobLimits, MeshLabProcess, as_text
+
+
+def work(source: Path, tmp_path: Path, steps: int = 1000, **more: Any) -> dict[str, Any]:
+    request = Request(source, FilterOptions(steps=steps), **more)
+    return {"call": "filter_to_scratch", "request": request, "scratch": tmp_path / "out.ply"}
 
 
 def long_work(samples: Path, tmp_path: Path) -> dict[str, Any]:
-    options = FilterOptions(steps=1000).as_dict()
-    files = {"source": str(samples / "bunny.obj"), "scratch": str(tmp_path / "out.ply")}
-    return {"task": "filter", "options": options, **files}
+    return work(samples / "bunny.obj", tmp_path)
 
 
 def test_a_mesh_that_takes_too_long_is_given_up(samples: Path, tmp_path: Path) -> None:
@@ -37,17 +40,12 @@ def test_a_mesh_that_takes_too_long_is_given_up(samples: Path, tmp_path: Path) -
 
 
 def test_a_mesh_that_needs_too_much_memory_is_given_up(samples: Path, tmp_path: Path) -> None:
-    with (
-        MeshLabProcess() as process,
-        pytest.raises(MemoryLimitError, match="more than 60 MiB"),
-    ):
+    with MeshLabProcess() as process, pytest.raises(MemoryLimitError, match="more than 60 MiB"):
         process.run(long_work(samples, tmp_path), limits=JobLimits(memory=60 * 2**20))
 
 
 def test_the_peak_of_a_job_grows_with_its_mesh(cow: Path, samples: Path, tmp_path: Path) -> None:
-    large, small = long_work(samples, tmp_path), long_work(samples, tmp_path)
-    large["options"] = small["options"] = FilterOptions(steps=4).as_dict()
-    small["source"] = str(cow)
+    small, large = (work(one, tmp_path, 4) for one in (cow, samples / "bunny.obj"))
     with MeshLabProcess() as process:
         peaks = [process.run(job).peak_memory for job in (small, large)]
     assert 30e6 < peaks[0] < peaks[1] - 30e6
@@ -93,11 +91,11 @@ os.write(2, 10000 * b"standard error \\xff\\n" + 100000 * b"x")
 
 
 def test_output_of_libraries_is_no_answer_and_stops_nothing(
-    cow: Path, samples: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    cow: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     (tmp_path / "sitecustomize.py").write_text(NOISY)
     monkeypatch.setenv("PYTHONPATH", str(tmp_path))
-    job = long_work(samples, tmp_path) | {"source": str(cow), "task": "info"}
+    job = {"call": "mesh_info", "request": Request(cow)}
     with MeshLabProcess() as process:
         assert process.run(job, limits=JobLimits(seconds=60)).report
 
@@ -115,15 +113,15 @@ def test_a_process_that_reads_nothing_is_given_up(
 
 
 PARENT = """
-import json, os, sys, threading, time
-from meshlab_spectral.workers.process import MeshLabProcess
+import os, sys, threading, time
+from meshlab_spectral.workers.process import MeshLabProcess, from_text
 process = MeshLabProcess()
 def tell(stage, fraction):
     if stage == "filtering":
         time.sleep(0.5)
         print(process.pid, flush=True)
         os.kill(os.getpid(), 9)
-process.run(json.loads(sys.argv[1]), tell)
+process.run(from_text(sys.argv[1]), tell)
 """
 
 
@@ -135,13 +133,13 @@ SCRIPT = (
 )
 
 
-@pytest.mark.parametrize("task", [{"task": "filter"}, {"task": "script", "script": SCRIPT}])
+@pytest.mark.parametrize("script", [None, SCRIPT], ids=["filter", "script"])
 def test_a_killed_parent_leaves_no_process_at_work(
-    task: dict[str, str], samples: Path, tmp_path: Path
+    script: str | None, samples: Path, tmp_path: Path
 ) -> None:
-    work = json.dumps(long_work(samples, tmp_path) | task)
+    job = as_text(work(samples / "bunny.obj", tmp_path, script=script))
     done = subprocess.run(
-        [sys.executable, "-c", PARENT, work],
+        [sys.executable, "-c", PARENT, job],
         capture_output=True,
         text=True,
         timeout=60,

@@ -6,6 +6,7 @@ import math
 from dataclasses import asdict, dataclass, field
 from typing import Any, Literal
 
+from meshlab_spectral.files.request import Request
 from meshlab_spectral.plugin.versions import versions
 
 Outcome = Literal["filtered", "unchanged", "measured", "failed", "already done"]
@@ -18,7 +19,7 @@ class Job:
     source: str  # absolute path or URL of the input
     target: str | None  # that of the output; None: the report is the result
     name: str  # that of the output, relative to the output folder
-    work: dict[str, Any] = field(hash=False)  # for `child`: "task" and its parameters, no files
+    request: Request  # what to do, with whichever file
     # For the report, what the result depends on: equal options and inputs give equal results.
     options: dict[str, Any] = field(hash=False)
     seconds: float | None = None  # time limit

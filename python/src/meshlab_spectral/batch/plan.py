@@ -16,6 +16,7 @@ from meshlab_spectral.batch.report import DEFAULT_NAME, check_report, read_repor
 from meshlab_spectral.batch.resume import Records, done_records, proved_done
 from meshlab_spectral.batch.settings import Settings
 from meshlab_spectral.errors import InputError, OptionError
+from meshlab_spectral.files.request import Request
 from meshlab_spectral.files.script import script_filters
 from meshlab_spectral.files.sources import check_source
 from meshlab_spectral.filters.option_types import Options
@@ -55,7 +56,7 @@ def plan_batch(
     """
     settings.check_workers()
     resume, overwrite = settings.resume, settings.overwrite
-    work, described = _work(options, settings.script)
+    request, described = _request(options, settings.script)
     folder = storage.absolute_location(str(output))
     if not storage.is_url(folder) and Path(folder).is_file():
         raise InputError(f"the output {output} is a file: name a folder for the outputs")
@@ -78,7 +79,6 @@ def plan_batch(
             raise OptionError(
                 "joined files cannot hold details or the height of noise: leave out one of them"
             )
-        work = {"task": "joined", "filter": work["task"], "options": described}
         # What becomes of a file depends on the others.
         described = described | {"joined": [output.source for output in planned]}
     jobs = [
@@ -86,7 +86,7 @@ def plan_batch(
             output.source,
             output.target,
             output.name,
-            work,
+            request,
             described,
             seconds=settings.timeout,
             overwrite=overwrite or resume,
@@ -111,14 +111,11 @@ def plan_batch(
     return Batch(left, list(done.values()), report_path, settings)
 
 
-def _work(
-    options: Options | None, script: str | Path | None
-) -> tuple[dict[str, Any], dict[str, Any]]:
-    """Return the `work` and the `options` of every `Job`."""
+def _request(options: Options | None, script: str | Path | None) -> tuple[Request, dict[str, Any]]:
+    """Return the `request` and the `options` of every `Job`."""
     if script is None:
         options = options or FilterOptions()
-        described = options.as_dict()
-        return {"task": options.TABLE, "options": described}, described
+        return Request(Path(), options, verbose=False), options.as_dict()
     if options is not None:
         raise OptionError(
             "a script contains its parameters: give either a script or options of the filter"
@@ -135,7 +132,7 @@ def _work(
         "script_sha256": hashlib.sha256(content).hexdigest(),
         "filters": script_filters(text),
     }
-    return {"task": "script", "script": text}, described
+    return Request(Path(), script=text, verbose=False), described
 
 
 def _report_path(folder: str, report: str | Path | None) -> Path:

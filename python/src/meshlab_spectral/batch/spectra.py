@@ -17,6 +17,7 @@ from meshlab_spectral.batch.report import check_report, read_report
 from meshlab_spectral.batch.resume import done_records, proved_done
 from meshlab_spectral.batch.settings import Settings
 from meshlab_spectral.errors import InputError
+from meshlab_spectral.files.request import Request
 from meshlab_spectral.filters.options import SpectrumOptions
 from meshlab_spectral.filters.spectrum import GeometrySpectrum
 from meshlab_spectral.plugin.versions import versions
@@ -43,12 +44,9 @@ def plan_spectra(
 ) -> Batch:
     """Plan the measurement of many spectra; the report on each mesh is its spectrum.
 
-    `inputs` are those of `files.filter_files`, `table` is the file for `write_table`. Only
-    recursive, resume, report, timeout and the workers are used of `settings`; the default report is
-    TABLE_report.jsonl, next to the table.
-
-    Raises InputError when inputs are missing, or the table or the report would replace another
-    file, OptionError as from `check_workers`, and BatchError when an earlier report cannot be read.
+    `inputs` are those of `files.filter_files`, `table` is the file for `write_table`; the default
+    report is TABLE_report.jsonl, next to it. Raises InputError when inputs are missing, or the
+    table or the report would replace another file, and as `check_workers` and `read_report` do.
     """
     settings.check_workers()
     table = table.absolute()
@@ -62,11 +60,8 @@ def plan_spectra(
     refuse_inputs([str(table)], locations)
     if table.is_file() and table.stat().st_size and not _is_table(table):
         raise InputError(f"{table} exists and is not a table of spectra: choose another name")
-    described = options.as_dict()
-    work = {"task": options.TABLE, "options": described}
-    jobs = [
-        Job(location, None, location, work, described, settings.timeout) for location in locations
-    ]
+    request, described = Request(Path(), options, verbose=False), options.as_dict()
+    jobs = [Job(one, None, one, request, described, settings.timeout) for one in locations]
     proved = (
         proved_done(jobs, done_records(read_report(report)), versions()) if settings.resume else {}
     )

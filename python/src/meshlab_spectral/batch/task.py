@@ -4,17 +4,15 @@ from __future__ import annotations
 
 import contextlib
 import time
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 from meshlab_spectral.batch import storage
 from meshlab_spectral.batch.jobs import FileResult, Job, Outcome
-from meshlab_spectral.errors import (
-    BatchError,
-    ProcessStartError,
-    SpectralError,
-)
+from meshlab_spectral.errors import BatchError, ProcessStartError, SpectralError
+from meshlab_spectral.files.request import Request
 from meshlab_spectral.files.whole_files import file_trouble, side_files
 from meshlab_spectral.plugin.versions import versions
 from meshlab_spectral.warned import Warned, warned, with_warnings
@@ -27,12 +25,33 @@ def run_job(processes: Processes, job: Job) -> FileResult:
     Errors with a single file are not raised. Raises BatchError when no process starts, and
     ProcessesEndedError when the processes are ended meanwhile.
     """
-    (result,) = run_together(processes, [job])
+    (result,) = _run(processes, [job], _alone)
     return result
 
 
 def run_together(processes: Processes, jobs: Sequence[Job]) -> list[FileResult]:
     """Process files that are one surface, as `run_job` does one; if one fails, all do."""
+    return _run(processes, jobs, _joined)
+
+
+def _alone(request: Request, sources: list[Path], scratches: list[Path]) -> dict[str, Any]:
+    """Return what is to be done with a file, for `MeshLabProcess.run`."""
+    request = replace(request, source=sources[0])
+    if not scratches:
+        return {"call": "spectrum_of", "request": request}
+    return {"call": "filter_to_scratch", "request": request, "scratch": scratches[0]}
+
+
+def _joined(request: Request, sources: list[Path], scratches: list[Path]) -> dict[str, Any]:
+    files = {"sources": sources, "scratches": scratches}
+    return {"call": "joined_to_scratches", **files, "options": request.options}
+
+
+def _run(
+    processes: Processes,
+    jobs: Sequence[Job],
+    work: Callable[[Request, list[Path], list[Path]], dict[str, Any]],
+) -> list[FileResult]:
     begin = time.monotonic()
     common: dict[str, Any] = {"waited": 0.0}
     own: list[dict[str, Any]] = [{"outcome": "failed"} for _ in jobs]
@@ -48,10 +67,8 @@ def run_together(processes: Processes, jobs: Sequence[Job]) -> list[FileResult]:
                 for job in jobs
                 if job.target is not None
             ]
-            places = {"sources": [*map(str, sources)], "scratches": [*map(str, scratches)]}
-            first = {"source": str(sources[0]), "scratch": str(scratches[0]) if scratches else None}
-            work = {**jobs[0].work, **places, **first, "verbose": False}
-            answer = processes.run(work, jobs[0].seconds, common)
+            call = work(jobs[0].request, sources, scratches)
+            answer = processes.run(call, jobs[0].seconds, common)
             written = [digests(scratch) for scratch in scratches] or [{}]
         report = answer.report
         largest = report.pop("largest", [report.get("max_displacement")])

@@ -59,7 +59,7 @@ def basis_command(
         refuse_existing(output, overwrite)
         check_picture(pictures, overwrite)
         with progress_shown() as on_progress:
-            write_in_child(Request(source, options, mesh), output, on_progress)
+            write_in_child("basis_to_scratch", Request(source, options, mesh), output, on_progress)
             if pictures is not None:
                 on_progress("drawing", None)
                 draw_basis_file(output, pictures, shown, scale)

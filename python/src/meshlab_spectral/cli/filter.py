@@ -209,13 +209,12 @@ def _command_with(table: type[Options], help_text: str) -> Command:
             as_files(source, destination, ending) as (read, written),
         ):
             options = chosen_options(table, explicit, recipe)
-            part = region if region.given() else None
             if memory is not None:
                 if scheduler is not None:
                     raise OptionError("a cluster configures its own workers: leave out --memory")
                 set_memory_limit(memory)
                 name_memory_limit("--memory")
-            request = Request(read, options, mesh, part)
+            request = Request(read, options, mesh, region)
             if dry_run:
                 with progress_shown() as on_progress:
                     intent = intent_of_file(request, written, on_progress, tiles, scheduler)
@@ -238,8 +237,8 @@ def _command_with(table: type[Options], help_text: str) -> Command:
                     report["color_extent"] = change.color_extent
                 if picture is not None:
                     comparison_sheet(change, (source.name, destination.name)).save(picture)
-        if save_recipe is not None and part is not None:
-            names = ", ".join(f"--{name}" for name in part.given())
+        if save_recipe is not None and region:
+            names = ", ".join(f"--{name}" for name in region.given())
             print_warning(f"{save_recipe} does not hold {names}: a region is of one file")
         warn_of_points_only(destination.suffix)
         for warning in report["warnings"]:
@@ -248,7 +247,7 @@ def _command_with(table: type[Options], help_text: str) -> Command:
             return
         if as_json:
             seconds = time.monotonic() - begin
-            typer.echo(json.dumps(_record(source, destination, options, part, report, seconds)))
+            typer.echo(json.dumps(_record(source, destination, options, region, report, seconds)))
         else:
             _print_reports(report, source.name, destination.name)
             if color_displacement is not None:
@@ -276,7 +275,7 @@ def _record(
     source: Path,
     target: Path,
     options: Options,
-    region: Region | None,
+    region: Region,
     report: dict[str, Any],
     seconds: float,
 ) -> dict[str, Any]:

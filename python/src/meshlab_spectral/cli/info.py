@@ -27,7 +27,7 @@ def info_command(source: Source, mesh: OneMesh = None, as_json: AsJson = False) 
       meshlab-spectral info scan.ply --json
     """
     with errors_reported("nothing was printed"), progress_shown() as on_progress:
-        report = measure_in_child(Request(source, mesh=mesh), on_progress)
+        report = measure_in_child("mesh_info", Request(source, mesh=mesh), on_progress)
     for warning in report["warnings"]:
         print_warning(warning)
     if as_json:

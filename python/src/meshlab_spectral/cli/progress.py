@@ -23,8 +23,7 @@ from rich.table import Column
 from rich.text import Text
 
 from meshlab_spectral.cli.messages import MESSAGES, VERBOSITY, one_line, print_message
-from meshlab_spectral.filters.progress import lines_now_and_then, terminal_bar
-from meshlab_spectral.workers.process import ProgressCallback
+from meshlab_spectral.filters.progress import StageCallback, lines_now_and_then, terminal_bar
 
 if TYPE_CHECKING:
     from meshlab_spectral.batch.jobs import FileResult
@@ -33,7 +32,7 @@ _FEWEST_PER_SECOND = 0.1
 
 
 @contextlib.contextmanager
-def progress_shown() -> Iterator[ProgressCallback]:
+def progress_shown() -> Iterator[StageCallback]:
     """Show MeshLab's progress, on a terminal or as a line every few seconds; none with --quiet."""
     if MESSAGES.is_terminal:
         with terminal_bar(MESSAGES, is_transient=True, is_quiet=VERBOSITY.quiet) as update:

@@ -103,7 +103,7 @@ def spectrum_command(
             refuse_existing(output, overwrite)
             scratch = stack.enter_context(writing_whole(output))
         with progress_shown() as on_progress:
-            report = measure_in_child(Request(source, measured, mesh), on_progress)
+            report = measure_in_child("spectrum_of", Request(source, measured, mesh), on_progress)
         spectrum = GeometrySpectrum.from_report(report)
         if scratch is not None:
             draw_spectrum(spectrum, options, source.name, scratch)

@@ -110,7 +110,7 @@ def texture_command(
                     V, F, texture = texture_in_child(request, on_progress)
             except SpectralError as error:
                 if not many:
-                    if isinstance(error, OptionError) and not explicit and region == Region():
+                    if isinstance(error, OptionError) and not (explicit or region):
                         raise MeshError(str(error)) from error  # the mesh's: no option was given
                     raise
                 print_error(f"{source}: {error}")

@@ -9,6 +9,7 @@ from __future__ import annotations
 import sys
 from collections.abc import Callable, Collection, Sequence
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 from shutil import copyfile
 from typing import Any
@@ -18,7 +19,6 @@ import numpy as np
 from meshlab_spectral.errors import FilterError, FormatError, MeshFileError, OptionError
 from meshlab_spectral.files.extensions import is_same_format
 from meshlab_spectral.files.meshes import (
-    StageCallback,
     chosen_by_name,
     in_scene,
     part_of,
@@ -41,8 +41,9 @@ from meshlab_spectral.files.script import apply_script
 from meshlab_spectral.files.sources import check_name, check_source
 from meshlab_spectral.files.touching import moved_alike, pieces
 from meshlab_spectral.filters.option_types import Options
+from meshlab_spectral.filters.progress import StageCallback
 from meshlab_spectral.filters.running import Run, run
-from meshlab_spectral.formats.document import Array, Document, Part, joined
+from meshlab_spectral.formats.document import Array, Document, Part, joined, split
 from meshlab_spectral.formats.opening import format_of, open_document
 from meshlab_spectral.formats.side_files import copy_side_files
 from meshlab_spectral.plugin.loading import load
@@ -55,78 +56,56 @@ _READ_BY_MESHLAB = (".ply", ".obj", ".off", ".stl")
 _BARE = {".ply": {"save_vertex_quality": False}}
 
 
-def filter_to_scratch(
-    request: Request, scratch: Path, on_stage: StageCallback, verbose: bool = True
-) -> dict[str, Any]:
+def filter_to_scratch(request: Request, scratch: Path, on_stage: StageCallback) -> dict[str, Any]:
     """Filter a mesh file into another, `scratch`, which after an error may be incomplete.
 
-    The request has options of a filter. All meshes of its file, unless one is named, are filtered,
-    each on its own, as placed in the scene, but those whose borders coincide together; coinciding
-    vertices move alike. In the format of the source only coordinates and normals change; another
-    format is written by MeshLab, with a warning that lists what is lost. `on_stage` is called with
-    "reading", "filtering" and "writing" as these begin, with None, and with the progress of the
-    filter. If `verbose`, the filter's report goes to standard error, as MeshLab's log does.
+    All meshes of the file, unless one is named, are filtered, each on its own, as placed in the
+    scene, but those whose borders coincide together; coinciding vertices move alike. In the format
+    of the source only coordinates and normals change; another format is written by MeshLab, with a
+    warning that lists what is lost. `on_stage` is called with "reading", "filtering" and "writing"
+    as these begin, with None, and with the progress of the filter.
 
     Returns the filter's report, as from `filter_mesh`, with the mesh's name, if any, as "mesh". For
     several surfaces, a list of their reports as "meshes", and "warnings" and "max_displacement" of
-    all of them.
+    all of them. For a script, the report of `script.apply_script`, which has its errors, too.
 
     Raises MeshFileError when the source cannot be read or `scratch` cannot be written, FormatError
     when its extension cannot be written, FilterError when the filter rejects a mesh or the options,
     and OptionError when no mesh has the name, or the region is empty.
     """
+    if request.script is not None:
+        script = partial(apply_script, text=request.script)
+        return _through_meshlab(request, scratch, script, on_stage)
     source, options, region = request.source, request.options, request.region
-    assert options is not None
     require_one_choice(options, region)
-    if region is not None:
+    if region:
         options = options.from_dict({**options.as_dict(), "selected": True})
 
     def apply(mesh_set: Any) -> dict[str, Any]:
         (part,) = chosen_parts([part_of(mesh_set.current_mesh())], options, region)
         assert part is not None
         done = _run(part, options, on_stage)
-        text = done.text if verbose else ""
+        text = done.text if request.verbose else ""
         results = {"vertices": done.vertices, "details": done.details, "values": done.values}
         write(mesh_set, options.FILTER, **results, text=text)
-        if verbose:
+        if request.verbose:
             print(*done.report["warnings"], sep="\n", file=sys.stderr)
         return _with_choice(done.plain_report, part, options)
 
     if attribute := wanted_attribute(options, scratch):
-        return _through_meshlab(source, scratch, apply, on_stage, verbose, {attribute: True})
+        return _through_meshlab(request, scratch, apply, on_stage, {attribute: True})
     if format_of(source) and (
         source.suffix.lower() not in _READ_BY_MESHLAB or is_same_format(source, scratch)
     ):
-        return _filter_document(replace(request, options=options), scratch, on_stage, verbose)
+        return _filter_document(replace(request, options=options), scratch, on_stage)
     if request.mesh is not None:
         raise OptionError(f"{source} is read as one mesh: leave out the name {request.mesh!r}")
-    return _through_meshlab(source, scratch, apply, on_stage, verbose)
+    return _through_meshlab(request, scratch, apply, on_stage)
 
 
-def script_to_scratch(
-    source: Path, scratch: Path, script: str, on_stage: StageCallback, verbose: bool = True
-) -> dict[str, Any]:
-    """Apply the text of a MeshLab script to `source` and write the result to `scratch`.
-
-    The result is the current mesh at the end of the script. Errors as in `filter_to_scratch`
-    and `script.apply_script`, which also describes the report.
-    """
-    return _through_meshlab(
-        source,
-        scratch,
-        lambda mesh_set: apply_script(mesh_set, script),
-        on_stage,
-        verbose,
-        is_script=True,
-    )
-
-
-def _filter_document(
-    request: Request, scratch: Path, on_stage: StageCallback, verbose: bool
-) -> dict[str, Any]:
+def _filter_document(request: Request, scratch: Path, on_stage: StageCallback) -> dict[str, Any]:
     """Filter the meshes of a document: each surface on its own, of one mesh or several pieces."""
-    source, options = request.source, request.options
-    assert options is not None
+    source = request.source
     on_stage("reading", None)
     check_source(source)
     stays = is_same_format(source, scratch)
@@ -135,14 +114,12 @@ def _filter_document(
         check_writable(scratch)
     document = open_document(source)
     chosen = chosen_by_name(document, request.mesh)
-    shapes, names, reports, parted = _moved(
-        document.parts, chosen, options, on_stage, verbose, request.region
-    )
+    shapes, names, reports, parted = _moved(document.parts, chosen, request, on_stage)
     if stays:
         warnings = document.save(scratch, shapes)
     else:
         bare = _BARE.get(scratch.suffix.lower())
-        write_with_meshlab(_merged(document, verbose, shapes), scratch, source, (), bare)
+        write_with_meshlab(_merged(document, request.verbose, shapes), scratch, source, (), bare)
         warnings = left_behind(document, scratch)
         warnings += rounding_warnings(joined(document.parts)[0], np.vstack(shapes), scratch)
     return _report(names, reports, document.warnings + parted + warnings)
@@ -164,13 +141,14 @@ def joined_to_scratches(
                 f"{source.name} cannot be joined with others: convert it to a format that the "
                 "output keeps, such as ply, and leave out --format"
             )
+    request = Request(sources[0], options, verbose=False)
     documents = [open_document(source) for source in sources]
     parts = [
         replace(part, name=f"{document.path.name} {part.name}".strip())
         for document in documents
         for part in document.parts
     ]
-    shapes, names, reports, warnings = _moved(parts, parts, options, on_stage, verbose=False)
+    shapes, names, reports, warnings = _moved(parts, parts, request, on_stage)
     ends = np.cumsum([len(document.parts) for document in documents])
     largest = []
     for document, scratch, end in zip(documents, scratches, ends.tolist(), strict=True):
@@ -183,12 +161,7 @@ def joined_to_scratches(
 
 
 def _moved(
-    parts: Sequence[Part],
-    chosen: Sequence[Part],
-    options: Options,
-    on_stage: StageCallback,
-    verbose: bool,
-    region: Region | None = None,
+    parts: Sequence[Part], chosen: Sequence[Part], request: Request, on_stage: StageCallback
 ) -> tuple[list[Array], list[str], list[dict[str, Any]], list[Warned]]:
     """Filter chosen parts, each surface on its own.
 
@@ -198,13 +171,12 @@ def _moved(
     moved = {part: part.vertices for part in parts}
     names, reports = [], []
     groups = pieces(chosen)
-    wholes = chosen_parts([whole_of(group) for group in groups], options, region)
+    wholes = chosen_parts(map(whole_of, groups), request.options, request.region)
     for group, whole in zip(groups, wholes, strict=True):
         if whole is None:
             continue
-        after, report = _filtered(whole, options, on_stage, verbose, len(groups) == 1)
-        ends = np.cumsum([len(part.vertices) for part in group])[:-1]
-        moved.update(zip(group, np.split(after, ends), strict=True))
+        after, report = _filtered(whole, request, on_stage, len(groups) == 1)
+        moved.update(zip(group, split(after, group), strict=True))
         names.append(whole.name)
         reports.append(report)
     on_stage("writing", None)
@@ -228,26 +200,26 @@ def wanted_attribute(options: Options, target: Path) -> str:
     return setting
 
 
-def require_one_choice(options: Options, region: Region | None) -> None:
+def require_one_choice(options: Options, region: Region) -> None:
     """Raise OptionError when both the file and the user select what is filtered."""
-    if region is not None and getattr(options, "selected", False):
+    if region and getattr(options, "selected", False):
         names = ", ".join(region.given())
         raise OptionError(f"selected and {names}: both choose what is filtered; leave one out")
 
 
 def _filtered(
-    part: Part, options: Options, on_stage: StageCallback, verbose: bool, is_alone: bool
+    part: Part, request: Request, on_stage: StageCallback, is_alone: bool
 ) -> tuple[Array, dict[str, Any]]:
     """Filter a mesh; return its vertices and the report."""
     try:
-        done = _run(part, options, on_stage)
+        done = _run(part, request.options, on_stage)
     except FilterError as error:
         if is_alone:
             raise
         raise type(error)(f"mesh {part.name}: {error}") from error
-    if verbose:
+    if request.verbose:
         print(done.text, *done.report["warnings"], sep="\n", file=sys.stderr)
-    report = _with_choice(done.plain_report, part, options)
+    report = _with_choice(done.plain_report, part, request.options)
     return part.vertices if done.vertices is None else done.vertices, report
 
 
@@ -302,22 +274,21 @@ def _report(
 
 
 def _through_meshlab(
-    source: Path,
+    request: Request,
     scratch: Path,
     apply: Callable[[Any], dict[str, Any]],
     on_stage: StageCallback,
-    verbose: bool,
     settings: dict[str, bool] | None = None,
-    is_script: bool = False,
 ) -> dict[str, Any]:
     """Let MeshLab write the file and, if it reads all of its contents, also read it."""
+    source = request.source
     load()
     on_stage("reading", None)
     check_source(source)
     check_name(scratch, scratch.parent.parent / scratch.name)
     check_writable(scratch)
     document = open_document(source) if format_of(source) else None
-    mesh_set, lacking = _loaded(source, document, verbose)
+    mesh_set, lacking = _loaded(source, document, request.verbose)
     on_stage("filtering", None)
     before = mesh_set.current_mesh().vertex_matrix()
     report = apply(mesh_set)
@@ -328,7 +299,7 @@ def _through_meshlab(
         warnings = copy_side_files(source, scratch, [one for one in textures if one != DUMMY])
         return with_warnings(report, warned(report) + warnings)
     given = None
-    if document is not None and not is_script:
+    if document is not None and request.script is None:
         given = () if lacking is None else document.contents
     write_with_meshlab(mesh_set, scratch, source, given, settings)
     if document is None:

@@ -10,12 +10,13 @@ import numpy as np
 from meshlab_spectral.errors import OptionError
 from meshlab_spectral.files.extensions import is_same_format
 from meshlab_spectral.files.filtering import require_one_choice, wanted_attribute
-from meshlab_spectral.files.meshes import StageCallback, load_parts, whole_of
+from meshlab_spectral.files.meshes import load_parts, whole_of
 from meshlab_spectral.files.meshlab_files import check_writable
 from meshlab_spectral.files.region_vertices import chosen_parts
 from meshlab_spectral.files.request import Request
 from meshlab_spectral.files.touching import pieces
 from meshlab_spectral.filters.arrays import mean_edge
+from meshlab_spectral.filters.progress import StageCallback
 from meshlab_spectral.plugin.loading import load
 
 
@@ -28,7 +29,6 @@ def intent_of(request: Request, target: Path, on_stage: StageCallback) -> dict[s
     output keeps all that is not moved.
     """
     source, options, region = request.source, request.options, request.region
-    assert options is not None
     require_one_choice(options, region)
     on_stage("reading", None)
     is_patched = not wanted_attribute(options, target) and is_same_format(source, target)
@@ -52,7 +52,7 @@ def intent_of(request: Request, target: Path, on_stage: StageCallback) -> dict[s
             "mean_edge": edge,
             "sizes": options.sizes(diagonal, edge, surface_diagonal),
         }
-        is_part = region is not None or getattr(options, "selected", False)
+        is_part = region or getattr(options, "selected", False)
         if is_part and part.selected is not None:
             described["filtered_vertices"] = int(np.count_nonzero(part.selected))
         surfaces.append(described)

@@ -11,13 +11,15 @@ from numpy.typing import NDArray
 
 from meshlab_spectral import _core
 from meshlab_spectral.errors import MeshError, MeshFileError
-from meshlab_spectral.files.meshes import StageCallback, in_scene, load_arrays, load_parts
+from meshlab_spectral.files.comparison import Comparison, compare
+from meshlab_spectral.files.meshes import in_scene, load_arrays, load_parts
 from meshlab_spectral.files.meshlab_files import read_with_meshlab
 from meshlab_spectral.files.region_vertices import restricted
 from meshlab_spectral.files.request import Request
 from meshlab_spectral.files.touching import least_linked
-from meshlab_spectral.filters.harmonics import compute
-from meshlab_spectral.filters.options import BasisOptions, SpectrumOptions, TextureOptions
+from meshlab_spectral.filters.harmonics import manifold_harmonics
+from meshlab_spectral.filters.options import SpectrumOptions, TextureOptions
+from meshlab_spectral.filters.progress import StageCallback
 from meshlab_spectral.filters.running import plain, run
 from meshlab_spectral.filters.spectrum import measure
 from meshlab_spectral.filters.texture import SurfaceTexture, surface_texture
@@ -38,24 +40,20 @@ _OF_NOISE = (
 _LENGTHS = ("diagonal", "mean_edge", "area", "default_feature_size")
 
 
-def mesh_info(source: Path, on_stage: StageCallback, mesh: str | None = None) -> dict[str, Any]:
+def mesh_info(request: Request, on_stage: StageCallback) -> dict[str, Any]:
     """Describe a mesh file; several meshes are described together.
 
-    Parameters and errors are those of `load_parts`; also FilterError when the mesh has no faces, no
+    Errors are those of `load_parts`; also FilterError when the mesh has no faces, no
     area or non-finite coordinates. `on_stage` is called with "reading", "measuring" and "looking
     for noise" as these begin, and with their progress.
 
-    Returns "meshes", their names; the numbers of "vertices", "faces", "components", "rims"
-    (boundary loops), "joined_vertices" (at seams) and "unreferenced_vertices", and, in a PLY file,
-    of "selected_vertices" and "selected_faces"; in the units of the file, "extent" along each axis,
-    "diagonal", "mean_edge", "area" (squared) and "default_feature_size"; what Spectral Denoise
-    would remove: "noise_summary"; its "noise_kind", "noise_height", "noise_size" and "noise_share"
-    of the surface; the number of "spikes", "voxel_size", and whether it could search,
-    "noise_searched"; "warnings".
+    Returns what `info --json` prints: names of the meshes, counts, lengths in the units of the
+    file, entries of `GeometrySpectrum` and, of what Spectral Denoise would remove, of
+    `DenoiseReport`; "rims" are boundary loops.
     """
     on_stage("reading", None)
-    parts = load_parts(source, mesh)
-    selected = _selected(source, parts)
+    parts = load_parts(request.source, request.mesh)
+    selected = _selected(request.source, parts)
     V, F = joined(parts)
     on_stage("measuring", None)
     spectrum = run(SpectrumOptions.FILTER, V, F, {}, progress=on_stage).report
@@ -119,19 +117,14 @@ def _selected(source: Path, parts: list[Part]) -> dict[str, int]:
 def basis_to_scratch(request: Request, scratch: Path, on_stage: StageCallback) -> dict[str, Any]:
     """Write the harmonics of a mesh file to a NumPy archive, `scratch` from `writing_whole`.
 
-    Uses all meshes of the file as one, unless one is named. Returns the sizes n and k as "vertices"
-    and "harmonics". Errors are those of `harmonics.manifold_harmonics`, and MeshFileError when the
-    file cannot be read.
-
-    The arrays are eigenvalues (k), frequencies (k), harmonics (n x k) and masses (n) as in
-    `Harmonics`, and the mesh as read, to whose vertices the rows belong: vertices (n x 3), faces
-    (m x 3).
+    All meshes of the file are one, unless one is named. The arrays are those of `Harmonics`, and
+    the mesh as read, to whose vertices the rows belong. Errors are those of `load_arrays` and
+    `manifold_harmonics`.
     """
-    assert isinstance(request.options, BasisOptions)
     on_stage("reading", None)
     V, F = load_arrays(request.source, request.mesh)
     on_stage("computing", None)
-    basis = compute(V, F, request.options, progress=on_stage)
+    basis = manifold_harmonics(V, F, **request.options.as_dict(), progress=on_stage)
     on_stage("writing", None)
     with scratch.open("wb") as file:
         np.savez(
@@ -144,6 +137,15 @@ def basis_to_scratch(request: Request, scratch: Path, on_stage: StageCallback) -
             faces=F,
         )
     return {"vertices": len(V), "harmonics": len(basis.eigenvalues)}
+
+
+def comparison_of(
+    a: Path, b: Path, max_distance: float | None, whole: bool, on_stage: StageCallback
+) -> Comparison:
+    """Compare two mesh files; only the `whole` comparison has meshes, and values at vertices."""
+    on_stage("reading", None)
+    found = compare(a, b, max_distance=max_distance)
+    return found if whole else found.without_arrays
 
 
 def texture_of(
@@ -162,15 +164,10 @@ def texture_of(
     if len(F) == 0:
         raise MeshError(f"{request.source} has no faces: there is no surface to measure")
     selection = None
-    if options.selected or region is not None:
-        chosen = parts if region is None else restricted(parts, region)
-        flags = [
-            np.zeros(len(part.vertices), bool)
-            if one is None or one.selected is None
-            else one.selected
-            for part, one in zip(parts, chosen, strict=True)
-        ]
-        selection = np.concatenate(flags)
+    if options.selected or region:
+        chosen = restricted(parts, region) if region else parts
+        none = [replace(part, selected=None) for part in parts]
+        selection = np.concatenate([(a or b).flags for a, b in zip(chosen, none, strict=True)])
     on_stage("measuring", None)
     texture = surface_texture(V, F, options, selection=selection, progress=on_stage)
     units = {part.unit for part in parts}

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -18,9 +18,6 @@ from meshlab_spectral.formats.names import shown
 from meshlab_spectral.formats.opening import format_of, open_document
 from meshlab_spectral.formats.placement import IDENTITY, Placement
 from meshlab_spectral.plugin.loading import load
-
-# Called with the current stage, and the fraction of it that is done or None.
-StageCallback = Callable[[str, float | None], object]
 
 _NAMED = 50  # meshes to choose from
 
@@ -80,12 +77,7 @@ def whole_of(group: Sequence[Part]) -> Part:
     quality = np.concatenate(qualities) if len(qualities) == len(group) else None
     selected = None
     if any(part.selected is not None for part in group):
-        selected = np.concatenate(
-            [
-                np.zeros(len(part.vertices), bool) if part.selected is None else part.selected
-                for part in group
-            ]
-        )
+        selected = np.concatenate([part.flags for part in group])
     return Part(name, *joined(group), quality, selected)
 
 

@@ -39,6 +39,8 @@ class Region:
     )
 
     def __post_init__(self) -> None:
+        if self.mask is not None:
+            object.__setattr__(self, "mask", self.mask.absolute())  # frozen for everybody else
         if self.box is not None:
             self.corners()
         if self.component not in (None, "largest") and not self.number:
@@ -62,18 +64,13 @@ class Region:
         text = self.component or ""
         return int(text) if text.isascii() and text.isdecimal() else 0
 
+    def __bool__(self) -> bool:
+        return bool(self.given())
+
     def given(self) -> dict[str, Any]:
         """Return what is given, as plain values; empty for the whole mesh."""
         return {
-            name: str(value.absolute()) if isinstance(value, Path) else value
+            name: str(value) if isinstance(value, Path) else value
             for name, value in asdict(self).items()
             if value is not None
         }
-
-    @classmethod
-    def from_given(cls, plain: dict[str, Any] | None) -> Region | None:
-        """Return the region of `given`; None for the whole mesh."""
-        if not plain:
-            return None
-        mask = plain.get("mask")
-        return cls(**{**plain, "mask": None if mask is None else Path(mask)})

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import warnings
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 
@@ -14,7 +14,7 @@ from meshlab_spectral import _core
 from meshlab_spectral.errors import InputError, OptionError
 from meshlab_spectral.files.region import Region
 from meshlab_spectral.filters.option_types import Options
-from meshlab_spectral.formats.document import Array, Indices, Part, joined
+from meshlab_spectral.formats.document import Array, Indices, Part, joined, split
 from meshlab_spectral.formats.normals import area_vectors, vertex_normals
 
 Flags = NDArray[np.bool_]
@@ -118,17 +118,16 @@ _VERTICES: Mapping[str, Callable[[Region, Array, Indices, Array | None], Flags]]
 }
 
 
-def chosen_parts(
-    parts: Sequence[Part], options: Options, region: Region | None
-) -> list[Part | None]:
+def chosen_parts(parts: Iterable[Part], options: Options, region: Region) -> list[Part | None]:
     """Return meshes whose selection is what of them is filtered, or None where nothing is.
 
     Raises OptionError when nothing is selected or in the region, and as `vertices_in` does.
     """
-    if region is not None:
+    parts = list(parts)
+    if region:
         return restricted(parts, region)
     if not getattr(options, "selected", False):
-        return list(parts)
+        return [*parts]
     if all(part.selected is None for part in parts):
         raise OptionError(NOTHING_SELECTED)
     return [None if part.selected is None else part for part in parts]
@@ -144,8 +143,7 @@ def restricted(parts: Sequence[Part], region: Region) -> list[Part | None]:
         for one in parts
     ]
     if region.component is not None:  # counted over all meshes
-        ends = np.cumsum([len(one.vertices) for one in parts])
-        flags = np.split(_in_component(region, *joined(parts), None), ends[:-1])
+        flags = split(_in_component(region, *joined(parts), None), parts)
         chosen = [one & more for one, more in zip(chosen, flags, strict=True)]
     if not any(flags.any() for flags in chosen):
         given = ", ".join(f"{name} = {value}" for name, value in region.given().items())

@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from meshlab_spectral import _core
 from meshlab_spectral._core import first_equal_rows
-from meshlab_spectral.formats.document import Array, Part, joined
+from meshlab_spectral.formats.document import Array, Part, joined, split
 from meshlab_spectral.warned import Warned
 
 
@@ -23,7 +22,7 @@ def pieces(parts: Sequence[Part]) -> list[list[Part]]:
         return [list(parts)]
     pairs = [(number, number) for number in range(len(parts))]
     owner = dict[int, int]()  # the first part of each component
-    for number, own in enumerate(_split(_core.components(*_arrays(parts)), parts)):
+    for number, own in enumerate(split(_core.components(*_arrays(parts)), parts)):
         for component in np.unique(own[own >= 0]).tolist():
             pairs.append((owner.setdefault(component, number), number))
     first = least_linked(pairs)
@@ -53,11 +52,6 @@ def _arrays(parts: Sequence[Part]) -> tuple[Array, NDArray[np.int32]]:
     return np.ascontiguousarray(V), np.ascontiguousarray(F, dtype=np.int32)
 
 
-def _split(rows: NDArray[Any], parts: Sequence[Part]) -> list[NDArray[Any]]:
-    """Return the rows of each part."""
-    return np.split(rows, np.cumsum([len(part.vertices) for part in parts])[:-1])
-
-
 def moved_alike(
     parts: Sequence[Part], moved: Sequence[Array], chosen: Sequence[Part]
 ) -> tuple[list[Array], list[Warned]]:
@@ -75,7 +69,7 @@ def moved_alike(
     after = np.vstack([*moved])
     differs = (alike != displacement).any(axis=1)
     after[differs] = (V + alike)[differs]
-    return _split(after, parts), _parted(parts, V, F, after - V, chosen)
+    return split(after, parts), _parted(parts, V, F, after - V, chosen)
 
 
 def _parted(

@@ -335,7 +335,13 @@ def manifold_harmonics(
     >>> smooth = basis.reconstruct(basis.project(V))
     """
     options = BasisOptions(basis_size=basis_size, laplacian=laplacian, boundary=boundary)
-    return compute(*mesh_arrays(mesh_or_vertices, faces), options, progress, threads)
+    V, F = mesh_arrays(mesh_or_vertices, faces)
+    parameters = {"mode": 0, **options.core_parameters()}  # mode 0 is in every basis
+    done = run(options.FILTER, V, F, parameters, progress=progress, threads=threads)
+    Phi = done.basis
+    assert Phi is not None
+    masses = _equal_areas(V, F, Phi) if laplacian == "uniform" else lumped_areas(V, F)
+    return Harmonics(done.report["eigenvalues"], Phi, masses)
 
 
 @takes_mesh_alone
@@ -415,22 +421,6 @@ def _rows(name: str, values: ArrayLike, count: int, what: str) -> Array:
         wrong = np.argwhere(~np.isfinite(rows))[0, 0]
         raise ArrayError(f"{name} is not finite at {what} {wrong}: pass finite values")
     return rows
-
-
-def compute(
-    V: NDArray[np.float64],
-    F: NDArray[Any],
-    options: BasisOptions,
-    progress: Progress | bool | None = None,
-    threads: int | None = None,
-) -> Harmonics:
-    """Compute the harmonics of validated arrays."""
-    parameters = {"mode": 0, **options.core_parameters()}  # mode 0 is in every basis
-    done = run(options.FILTER, V, F, parameters, progress=progress, threads=threads)
-    Phi = done.basis
-    assert Phi is not None
-    masses = _equal_areas(V, F, Phi) if options.laplacian == "uniform" else lumped_areas(V, F)
-    return Harmonics(done.report["eigenvalues"], Phi, masses)
 
 
 def _equal_areas(V: Array, F: NDArray[Any], Phi: Array) -> Array:

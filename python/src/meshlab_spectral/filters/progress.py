@@ -13,8 +13,8 @@ if TYPE_CHECKING:
     from rich.console import Console
 
 Progress = Callable[[str, float], object]
-# Called with a stage, and the fraction of it that is done or None.
-Update = Callable[[str, float | None], None]
+# Called with a stage, and the fraction of it that is done, 0 to 1, or None if unknown.
+StageCallback = Callable[[str, float | None], object]
 
 # Between plain lines; a shorter run prints none.
 SECONDS_BETWEEN = 5.0
@@ -45,7 +45,7 @@ def progress_callback(progress: Progress | bool | None) -> Iterator[Progress | N
 @contextlib.contextmanager
 def terminal_bar(
     console: Console, *, is_transient: bool = False, is_quiet: bool = False
-) -> Iterator[Update]:
+) -> Iterator[StageCallback]:
     """Show a bar, which disappears at the end if it is transient."""
     from rich.progress import BarColumn, SpinnerColumn, TextColumn, TimeElapsedColumn
     from rich.progress import Progress as Bar
@@ -73,7 +73,7 @@ def terminal_bar(
         yield update
 
 
-def lines_now_and_then(tell: Callable[[str], None]) -> Update:
+def lines_now_and_then(tell: Callable[[str], None]) -> StageCallback:
     """Return what tells the progress as a line every few seconds."""
     begin = last = time.monotonic()
 
@@ -96,7 +96,7 @@ def _is_notebook() -> bool:
 
 
 @contextlib.contextmanager
-def _notebook_bar() -> Iterator[Update]:
+def _notebook_bar() -> Iterator[StageCallback]:
     """Show a bar of HTML, which needs no widgets."""
     from IPython.display import HTML, display
 

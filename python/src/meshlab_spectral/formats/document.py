@@ -7,6 +7,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from shutil import copyfile
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -37,12 +38,22 @@ class Part:
     is_shown: bool = True  # whether it is in the scene that the file shows first
     unit: str = ""  # what a length is; "" if the file does not say so
 
+    @property
+    def flags(self) -> NDArray[np.bool_]:
+        """Which of the n vertices are selected."""
+        return np.zeros(len(self.vertices), bool) if self.selected is None else self.selected
+
 
 def joined(parts: Sequence[Part]) -> tuple[Array, Indices]:
     """Return several meshes as one."""
     begins = np.cumsum([0, *(len(part.vertices) for part in parts)])
     faces = [part.faces + begin for part, begin in zip(parts, begins, strict=False)]
     return np.vstack([part.vertices for part in parts]), np.vstack(faces)
+
+
+def split(rows: NDArray[Any], parts: Sequence[Part]) -> list[NDArray[Any]]:
+    """Return the rows of each part, of those of all their vertices."""
+    return np.split(rows, np.cumsum([len(part.vertices) for part in parts])[:-1])
 
 
 @dataclass

@@ -7,10 +7,11 @@ from typing import Any
 
 import numpy as np
 
+from meshlab_spectral.filters.progress import StageCallback
 from meshlab_spectral.formats.document import Array, Indices
 from meshlab_spectral.formats.rows import MeshRows, chunks, forget
 from meshlab_spectral.tiles.cells import near_cells
-from meshlab_spectral.tiles.plan import Plan, StageCallback, Workspace
+from meshlab_spectral.tiles.plan import Plan, Workspace
 
 
 def scatter(mesh: MeshRows, plan: Plan, work: Workspace, on_progress: StageCallback) -> None:

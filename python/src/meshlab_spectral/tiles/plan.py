@@ -6,7 +6,7 @@ import contextlib
 import json
 import secrets
 import shutil
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
@@ -14,9 +14,6 @@ from typing import Any
 from meshlab_spectral.filters.option_types import Options
 from meshlab_spectral.filters.tables import TABLES
 from meshlab_spectral.tiles.cells import Tree
-
-# Called with the current stage and the fraction of it that is done.
-StageCallback = Callable[[str, float | None], object]
 
 _PLAN, _SCATTERED = "plan.json", "scattered"
 

@@ -19,6 +19,7 @@ from meshlab_spectral.files.sources import check_is_place, check_source
 from meshlab_spectral.files.whole_files import LOCK, check_target, holding, resolved, writing_whole
 from meshlab_spectral.filters.option_types import Options
 from meshlab_spectral.filters.options import DenoiseOptions, FilterOptions
+from meshlab_spectral.filters.progress import StageCallback
 from meshlab_spectral.formats.digits import rounding_message, widening_warnings
 from meshlab_spectral.formats.opening import open_rows
 from meshlab_spectral.formats.rows import MeshRows
@@ -37,7 +38,6 @@ from meshlab_spectral.warned import Warned, warned, with_warnings
 from meshlab_spectral.workers.memory import PROCESS_BYTES, TILE_BYTES, limit_for, workers_for_tiles
 from meshlab_spectral.workers.opening import open_workers
 from meshlab_spectral.workers.pool import Workers
-from meshlab_spectral.workers.process import ProgressCallback
 
 # Larger tiles are hardly faster, and a failed or interrupted one costs more.
 _LARGEST_TILE = 1_000_000  # vertices
@@ -60,7 +60,7 @@ def filter_in_tiles(
     source: Path,
     target: Path,
     options: Options,
-    on_progress: ProgressCallback,
+    on_progress: StageCallback,
     tiles: int,
     tell: Callable[[str], None],
     overwrite: bool = True,
@@ -103,7 +103,7 @@ def intent_in_tiles(
     source: Path,
     target: Path,
     options: Options,
-    on_progress: ProgressCallback,
+    on_progress: StageCallback,
     tiles: int,
     scheduler: str | None = None,
 ) -> dict[str, Any]:
@@ -142,7 +142,7 @@ def _planned(
     rows: MeshRows,
     source: Path,
     options: Options,
-    on_progress: ProgressCallback,
+    on_progress: StageCallback,
     tiles: int,
     work: Workspace,
     pool: _Pool,
@@ -186,7 +186,7 @@ def _planned(
     return plan
 
 
-def _surveyed(rows: MeshRows, options: Options, on_progress: ProgressCallback) -> Survey:
+def _surveyed(rows: MeshRows, options: Options, on_progress: StageCallback) -> Survey:
     """Survey a mesh; raise OptionError where nothing is selected of what was asked for."""
     measured = survey(rows, on_progress)
     if options.as_dict()["selected"] and not measured.has_selection:
@@ -256,7 +256,7 @@ def _workers(scheduler: str | None) -> contextlib.AbstractContextManager[_Pool]:
 
 
 def _filtered(
-    plan: Plan, work: Workspace, on_progress: ProgressCallback, pool: _Pool
+    plan: Plan, work: Workspace, on_progress: StageCallback, pool: _Pool
 ) -> list[dict[str, Any]]:
     """Filter all tiles that are not done yet; return the reports of all."""
     options = plan.options_of_filter()

@@ -8,9 +8,9 @@ from typing import NamedTuple
 import numpy as np
 
 from meshlab_spectral.errors import MeshFileError
+from meshlab_spectral.filters.progress import StageCallback
 from meshlab_spectral.formats.document import Array
 from meshlab_spectral.formats.rows import MeshRows, chunks
-from meshlab_spectral.tiles.plan import StageCallback
 
 _SAMPLE = 400_000  # points, at most, by which the cells are chosen
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import socket
 from dataclasses import dataclass, field
+from pathlib import Path
 from typing import Any, NoReturn
 
 from meshlab_spectral.errors import FilterError, MeshFileError
@@ -51,9 +52,9 @@ def run_tile(processes: Processes, job: TileJob) -> tuple[int, dict[str, Any]]:
     Raises SpectralError, and ProcessesEndedError when the processes are ended meanwhile.
     """
     check_seen(job.source, job.folder)
-    work = {"task": "tile", "folder": job.folder, "tile": job.tile, "decided": job.decided}
+    work = {"folder": Path(job.folder), "tile": job.tile, "decided": job.decided}
     try:
-        answer = processes.run({**work, "verbose": False})
+        answer = processes.run({"call": "filter_tile", **work})
     except FilterError as error:
         raise job.named(error) from error
     return job.tile, answer.report

@@ -12,7 +12,8 @@ from meshlab_spectral.extras import check_extras
 from meshlab_spectral.files.request import Request
 from meshlab_spectral.files.sources import check_source
 from meshlab_spectral.files.whole_files import check_target
-from meshlab_spectral.workers.process import NO_LIMITS, JobLimits, ProgressCallback
+from meshlab_spectral.filters.progress import StageCallback
+from meshlab_spectral.workers.process import NO_LIMITS, JobLimits
 from meshlab_spectral.workers.single_file import measure_in_child, write_in_child
 
 # Smaller files are tried as a whole, without a look at them.
@@ -25,7 +26,7 @@ _SURELY, _USUALLY, _MOST = 1000, 1500, 2000
 def filter_file(
     request: Request,
     target: Path,
-    on_progress: ProgressCallback,
+    on_progress: StageCallback,
     overwrite: bool,
     tiles: int | None,
     tell: Callable[[str], None],
@@ -40,19 +41,19 @@ def filter_file(
     """
     tiles = _tiles_for(request, tiles, scheduler)
     if tiles is None:
-        return write_in_child(request, target, on_progress, overwrite)
+        return write_in_child("filter_to_scratch", request, target, on_progress, overwrite)
 
     def in_tiles(number: int) -> dict[str, Any]:
         from meshlab_spectral.tiles.run import filter_in_tiles  # a slow import
 
-        assert request.options is not None
         what = request.source, target, request.options
         return filter_in_tiles(*what, on_progress, number, tell, overwrite, scheduler)
 
     if tiles > 0 or scheduler is not None:
         return in_tiles(tiles)
     try:
-        return write_in_child(request, target, on_progress, overwrite, _limits(request.source))
+        limits = _limits(request.source)
+        return write_in_child("filter_to_scratch", request, target, on_progress, overwrite, limits)
     except MemoryLimitError as refusal:
         try:
             return in_tiles(0)
@@ -63,7 +64,7 @@ def filter_file(
 def intent_of_file(
     request: Request,
     target: Path,
-    on_progress: ProgressCallback,
+    on_progress: StageCallback,
     tiles: int | None,
     scheduler: str | None = None,
 ) -> dict[str, Any]:
@@ -81,12 +82,11 @@ def intent_of_file(
             _limits(request.source)
             tiles = None
     if tiles is None:
-        more = {"target": str(target.absolute())}
-        intent = {**measure_in_child(request, on_progress, more), "tiles": 0}
+        intent = measure_in_child("intent_of", request, on_progress, target=target.absolute())
+        intent["tiles"] = 0
     else:
         from meshlab_spectral.tiles.run import intent_in_tiles
 
-        assert request.options is not None
         what = request.source, target, request.options
         intent = intent_in_tiles(*what, on_progress, tiles, scheduler)
     from meshlab_spectral.workers.memory import available_memory
@@ -101,8 +101,7 @@ def _tiles_for(request: Request, tiles: int | None, scheduler: str | None) -> in
     Raises UntiledError when a number, or a scheduler, is given for what cannot be divided.
     """
     asking = "tiles" if tiles else "the scheduler"
-    parts = [*(request.region.given() if request.region is not None else ())]
-    parts += ["mesh"] if request.mesh else []
+    parts = [*request.region.given(), *["mesh"] * bool(request.mesh)]
     if parts and (tiles or scheduler is not None):
         names = ", ".join(parts)
         raise UntiledError(f"only the whole is filtered in tiles: leave out {names}, or {asking}")

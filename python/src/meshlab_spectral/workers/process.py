@@ -7,10 +7,12 @@ becomes an error with a message.
 
 from __future__ import annotations
 
+import base64
 import contextlib
 import json
 import logging
 import os
+import pickle
 import queue
 import re
 import signal
@@ -19,14 +21,12 @@ import sys
 import threading
 import time
 from collections import deque
-from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
 from meshlab_spectral import errors
+from meshlab_spectral.filters.progress import StageCallback
 from meshlab_spectral.plugin.limits import THREADS, given_memory_limit, memory_remedy
-
-ProgressCallback = Callable[[str, float | None], None]
 
 # Receives MeshLab's log, except for its progress.
 LOG = logging.getLogger("meshlab_spectral.meshlab")
@@ -120,16 +120,15 @@ class MeshLabProcess:
     def run(
         self,
         job: dict[str, Any],
-        on_progress: ProgressCallback | None = None,
+        on_progress: StageCallback | None = None,
         limits: JobLimits = NO_LIMITS,
     ) -> Answer:
-        """Do a job, described as `child` expects it, within its limits.
+        """Do a job within its limits: "call", the name of a function of `child`, and its arguments.
 
-        `on_progress` is called with the current stage and the fraction done, 0 to 1, or None if
-        unknown. Raises the SpectralError of the filter, or of reading or writing a file;
-        ProcessDiedError when the child died without an answer, ProcessStartError if it was not
-        ready yet; TimeLimitError or MemoryLimitError when it exceeded a limit and was ended;
-        OptionError when the memory limit of the environment is invalid.
+        With a path as "result", what the call returns is pickled there. Raises the SpectralError of
+        the call; ProcessDiedError when the child died without an answer, ProcessStartError if it
+        was not ready yet; TimeLimitError or MemoryLimitError when it exceeded a limit and was
+        ended; OptionError when the memory limit of the environment is invalid.
         """
         given = None if limits.replaces_environment else given_memory_limit()
         if given is not None and (limits.memory is None or given <= limits.memory):
@@ -140,16 +139,18 @@ class MeshLabProcess:
             self._log.clear()
         self.jobs += 1
         self.usable = False  # until the job has succeeded
-        self._is_verbose, self._stage = job.get("verbose", True), ""
+        self._is_verbose, self._stage = getattr(job.get("request"), "verbose", True), ""
         # The plugin refuses work beyond the memory limit; what it cannot foresee is caught below.
-        line = json.dumps({**job, "memory": self.memory_limit}) + "\n"
+        line = as_text({**job, "memory": self.memory_limit}) + "\n"
         # In a thread: a long script fills the pipe, and the child may hang before it reads it.
         threading.Thread(target=self._send, args=[line], daemon=True).start()
         answer, peak_memory = self._await_answer(on_progress or _ignore, limits.seconds)
-        if self.memory_limit is not None and answer.get("error") == "MemoryLimitError":
-            raise self._too_much_memory(answer["message"])
         if "error" in answer:
-            raise _error_of(answer)
+            error: errors.SpectralError = from_text(answer["error"])
+            if self.memory_limit is not None and type(error) is errors.MemoryLimitError:
+                raise self._too_much_memory(str(error))
+            # For --debug: where it happened in the child.
+            raise error from RuntimeError(answer["traceback"])
         self.usable = True
         return Answer(answer["report"], peak_memory)
 
@@ -186,7 +187,7 @@ class MeshLabProcess:
             return 0
 
     def _await_answer(
-        self, on_progress: ProgressCallback, time_limit: float | None
+        self, on_progress: StageCallback, time_limit: float | None
     ) -> tuple[dict[str, Any], int]:
         """Return the answer to a job, and the peak memory during it."""
         begin = time.monotonic()
@@ -311,13 +312,11 @@ def _not_started(how: str) -> errors.ProcessStartError:
     )
 
 
-def _error_of(answer: dict[str, Any]) -> errors.SpectralError:
-    kind = getattr(errors, answer["error"], errors.FilterError)
-    error: errors.SpectralError = kind(answer["message"])
-    if isinstance(error, errors.FilterError):
-        error.code, error.limit = answer.get("code", ""), answer.get("limit", 0)
-    elif isinstance(error, errors.MeshFileError):
-        error.code = answer.get("code", "")
-    # For --debug: where it happened in the child.
-    error.__cause__ = RuntimeError(answer["traceback"])
-    return error
+def as_text(content: object) -> str:
+    """Pickle an object for a line."""
+    return base64.b64encode(pickle.dumps(content)).decode()
+
+
+def from_text(text: str) -> Any:
+    """Return what `as_text` has pickled."""
+    return pickle.loads(base64.b64decode(text))
