@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from meshlab_spectral.formats.normals import vertex_normals
+from meshlab_spectral.formats.ply_elements import write_ply
 
 Mesh = tuple[NDArray[np.float64], NDArray[np.int64]]
 
@@ -71,15 +72,7 @@ def terrain(noise: float = 0.2, *, seed: int = 0) -> Mesh:
 
 def save(path: str | Path, vertices: NDArray[np.float64], faces: NDArray[np.int64]) -> None:
     """Write a mesh as a binary PLY file; an existing file is replaced."""
-    import plyfile
-
-    points = np.empty(len(vertices), [(axis, "f8") for axis in "xyz"])
-    for axis, column in zip("xyz", np.asarray(vertices).T, strict=True):
-        points[axis] = column
-    triangles = np.empty(len(faces), [("vertex_indices", "i4", (3,))])
-    triangles["vertex_indices"] = faces
-    described = plyfile.PlyElement.describe
-    plyfile.PlyData([described(points, "vertex"), described(triangles, "face")]).write(str(path))
+    write_ply(Path(path), vertices, faces)
 
 
 def _sphere(subdivisions: int) -> Mesh:

@@ -36,10 +36,9 @@ def plan_outputs(
 ) -> list[Output]:
     """Name the output of each input found by `find_inputs`.
 
-    The inputs' subfolders are recreated in `folder`, a path or URL. In the `pattern` of the names,
-    without extension, {stem} and {ending} stand for the parts of the input's name before and after
-    its last dot, {folder} for the name of its folder; a "/" creates folders. `ending` is by default
-    that of the input, or ply if it cannot be written with faces.
+    The inputs' subfolders are recreated in `folder`, a path or URL; a "/" in the `pattern` creates
+    folders, too. `ending` is by default that of the input, or ply if it cannot be written with
+    faces.
 
     Raises InputError when the pattern is invalid, outputs would share a name, or one would replace
     an input, and FormatError when MeshLab cannot write files with that extension.

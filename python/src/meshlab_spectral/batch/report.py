@@ -57,14 +57,9 @@ def read_report(path: Path) -> Iterator[dict[str, Any]]:
 
 
 class Report:
-    """A report open for appending, by one process at a time.
+    """A report open for appending, by one process at a time; else BatchError is raised.
 
     Every line is on disk when `add` returns; several threads may call it.
-
-    Raises
-    ------
-    BatchError
-        When it cannot be written, or another batch is writing it.
     """
 
     def __init__(self, path: Path) -> None:

@@ -117,13 +117,7 @@ class Sheet:
             spine.set_visible(False)
 
     def save(self, path: Path) -> None:
-        """Write the page, atomically.
-
-        Raises
-        ------
-        MeshFileError
-            When it cannot be written.
-        """
+        """Write the page, atomically; raise MeshFileError when it cannot be written."""
         from PIL import Image as Picture
 
         self._canvas.draw()

@@ -16,6 +16,7 @@ from meshlab_spectral.files.comparison import Comparison, signed_colours
 from meshlab_spectral.filters.arrays import check_class, mesh_arrays
 from meshlab_spectral.filters.mesh_objects import takes_mesh_alone
 from meshlab_spectral.filters.texture import SurfaceTexture
+from meshlab_spectral.formats.ply_elements import write_ply
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -51,24 +52,8 @@ def signed_sheet(
 
 def write_signed(V: Array, F: NDArray[Any], values: Array, extent: float, scratch: Path) -> None:
     """Write a mesh as .ply: blue, white and red are -extent, 0 and extent, as in MeshLab."""
-    import plyfile
-
-    columns = [(name, "f8") for name in ("x", "y", "z", "quality")]
-    columns += [(name, "u1") for name in ("red", "green", "blue")]
-    vertices = np.empty(len(V), columns)
-    for name, coordinates in zip("xyz", V.T, strict=True):
-        vertices[name] = coordinates
-    vertices["quality"] = values
-    colours = signed_colours(values, extent)
-    for name, levels in zip(("red", "green", "blue"), colours.T, strict=True):
-        vertices[name] = levels
-    faces = np.empty(len(F), [("vertex_indices", "i4", (3,))])
-    faces["vertex_indices"] = F
-    elements = [
-        plyfile.PlyElement.describe(vertices, "vertex"),
-        plyfile.PlyElement.describe(faces, "face"),
-    ]
-    plyfile.PlyData(elements).write(scratch)
+    colours = dict(zip(("red", "green", "blue"), signed_colours(values, extent).T, strict=True))
+    write_ply(scratch, V, F, quality=values, **colours)
 
 
 def plot_comparison(comparison: Comparison, names: tuple[str, str] = ("a", "b")) -> Figure:

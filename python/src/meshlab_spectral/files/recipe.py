@@ -26,11 +26,9 @@ _NAMED, _LONGEST = 5, 1000  # unknown keys, and characters of what is wrong with
 
 
 def load_recipe(path: Path) -> tuple[type[Options], dict[str, Any]]:
-    """Read the options in a recipe; options it leaves out keep their defaults.
+    """Return the class of the options in a recipe, and the validated options for its `from_dict`.
 
-    Returns the class of the options, and the validated options for its `from_dict`.
-    Raises InputError when the file cannot be read, OptionError when it is not TOML, or has an
-    unknown key or an invalid value.
+    Raises InputError when the file cannot be read, OptionError for what is wrong in it.
     """
     table, options = _content(path)
     try:
@@ -45,8 +43,7 @@ def saving_recipe(path: Path | None, options: Options | None) -> Iterator[None]:
     """Write all options to a recipe, which may replace another recipe but no other file.
 
     It is written once the block has succeeded, and not at all if `path` or `options` is None.
-    Raises InputError, before the block, when the file exists and is not a recipe, and
-    MeshFileError when it cannot be written, if possible before the block.
+    Raises InputError when the file exists and is not a recipe, and as `writing_whole` does.
     """
     if path is None or options is None:
         yield

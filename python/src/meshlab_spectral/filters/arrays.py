@@ -7,8 +7,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from meshlab_spectral.errors import ArgumentError, ArrayError
-from meshlab_spectral.filters.mesh_objects import kind_of, known_kinds, remedy_for
+from meshlab_spectral.errors import ArgumentError, ArrayError, OptionError
+from meshlab_spectral.filters.mesh_objects import array_of, kind_of, known_kinds, remedy_for
 from meshlab_spectral.formats.normals import area_vectors
 
 
@@ -91,12 +91,28 @@ def vertex_numbers(values: ArrayLike, count: int, name: str) -> NDArray[np.float
     return numbers
 
 
-def chosen_vertices(selection: ArrayLike, count: int, F: NDArray[np.integer]) -> NDArray[np.bool_]:
-    """Return which of `count` vertices are selected.
+def selected_vertices(
+    mesh: Any,
+    selection: ArrayLike | None,
+    count: int,
+    F: NDArray[np.integer],
+    parameters: dict[str, Any],
+) -> NDArray[np.bool_] | None:
+    """Return which of `count` vertices are selected, and say so in the parameters of the filter.
 
     `selection` is one boolean per vertex, or indices of faces in `F`, m x 3, which select their
-    corners. Raises ArrayError when it is neither, or an index is out of range.
+    corners, or the name of such data of the mesh. Raises ArrayError when it is none, or an index is
+    out of range; OptionError when it is missing.
     """
+    if selection is None:
+        if parameters.get("selected"):
+            raise OptionError("selected = True: pass the selected vertices or faces as selection")
+        return None
+    parameters["selected"] = True
+    return _chosen(array_of(mesh, selection, "selection"), count, F)
+
+
+def _chosen(selection: ArrayLike, count: int, F: NDArray[np.integer]) -> NDArray[np.bool_]:
     array = np.asarray(selection)
     if array.dtype == bool and array.shape == (count,):
         return array

@@ -19,7 +19,6 @@ from meshlab_spectral.errors import ArgumentError, ArrayError
 from meshlab_spectral.filters.mesh_normals import followed
 from meshlab_spectral.formats.normals import are_normals, following_normals
 from meshlab_spectral.other_words import instead_of
-from meshlab_spectral.plugin.loading import FILTER_NAME
 from meshlab_spectral.plugin.mesh_sets import written_copy
 
 Function = TypeVar("Function", bound=Callable[..., Any])
@@ -106,10 +105,6 @@ def _pymeshlab_arrays(mesh: Any) -> tuple[Any, Any]:
     if not mesh.is_compact():
         raise ArrayError("the mesh has deleted elements: call its compact() first")
     return mesh.vertex_matrix(), mesh.face_matrix()
-
-
-def _pymeshlab_moved(mesh: Any, X: Array) -> Any:
-    return written_copy(mesh, FILTER_NAME, X)
 
 
 def _pymeshlab_data(mesh: Any) -> dict[str, Any]:
@@ -291,7 +286,7 @@ def _point_data(mesh: Any) -> Mapping[str, Any]:
 
 
 PYMESHLAB = MeshKind(
-    "pymeshlab.Mesh", "face_matrix", _pymeshlab_arrays, _pymeshlab_moved, _pymeshlab_data
+    "pymeshlab.Mesh", "face_matrix", _pymeshlab_arrays, written_copy, _pymeshlab_data
 )
 # Recognized by `_is_pair`.
 _PAIR = MeshKind("a tuple (vertices, faces)", "", lambda pair: pair, lambda pair, X: (X, pair[1]))

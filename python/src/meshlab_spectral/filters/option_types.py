@@ -168,13 +168,7 @@ class Options:
     def from_call(
         cls: type[AnyOptions], options: AnyOptions | None, named: Mapping[str, object]
     ) -> AnyOptions:
-        """Return the options of a call, given as one object or by name.
-
-        Raises
-        ------
-        OptionError
-            When both are given, or the object is for another filter.
-        """
+        """Return the options of a call, given as one object or by name; OptionError if by both."""
         if options is None:
             return cls.from_dict(named)
         if not isinstance(options, cls):

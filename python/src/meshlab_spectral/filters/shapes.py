@@ -7,7 +7,7 @@ from typing import Any
 from numpy.typing import ArrayLike
 
 from meshlab_spectral.errors import OptionError
-from meshlab_spectral.filters.arrays import chosen_vertices, mesh_arrays, vertex_numbers
+from meshlab_spectral.filters.arrays import mesh_arrays, selected_vertices, vertex_numbers
 from meshlab_spectral.filters.mesh_objects import PYMESHLAB, array_of, kind_of
 from meshlab_spectral.filters.option_types import Options
 from meshlab_spectral.filters.progress import Progress
@@ -40,24 +40,19 @@ def filter_shape(
         weights = own.get("quality")
     if selection is None and getattr(options, "selected", False):
         selection = own.get("selection")
-    values = selected = None
-    part: dict[str, Any] = {}
+    parameters, values = options.core_parameters(), None
     if weights is not None:
         array = array_of(mesh_or_vertices, weights, "weights")
         values = vertex_numbers(array, len(V), "weights")[:, None]
-        part["weight"] = "vertex quality"
+        parameters["weight"] = "vertex quality"
     elif getattr(options, "weight", "none") != "none":
         raise OptionError("weight = vertex quality: pass the quality as weights")
-    if selection is not None:
-        selected = chosen_vertices(array_of(mesh_or_vertices, selection, "selection"), len(V), F)
-        part["selected"] = True
-    elif getattr(options, "selected", False):
-        raise OptionError("selected = True: pass the selected vertices or faces as selection")
+    selected = selected_vertices(mesh_or_vertices, selection, len(V), F, parameters)
     done = run(
         options.FILTER,
         V,
         F,
-        {**options.core_parameters(), **part},
+        parameters,
         selected=selected,
         values=values,
         gain=gain,
@@ -70,7 +65,7 @@ def filter_shape(
     if done.values is not None:
         report["noise_heights"] = done.values[:, 0].tolist()
     if kind is PYMESHLAB:  # which keeps the heights, too
-        copy = written_copy(mesh_or_vertices, options.FILTER, done.vertices, done.values)
+        copy = written_copy(mesh_or_vertices, done.vertices, done.values, options.FILTER)
         return copy, report
     X = V.copy() if done.vertices is None else done.vertices
     return X if kind is None else kind.moved(mesh_or_vertices, X), report

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from functools import partial
 from math import isfinite, log, pi, sqrt
 from typing import TYPE_CHECKING, Any, cast
 
@@ -17,7 +18,7 @@ from meshlab_spectral.filters.options import FilterOptions, TransferKeywords
 from meshlab_spectral.filters.progress import Progress, progress_callback
 from meshlab_spectral.filters.reports import ColorsReport, ScalarsReport
 from meshlab_spectral.filters.representations import Report
-from meshlab_spectral.filters.running import Gain, Run, plain, require_no_type, run
+from meshlab_spectral.filters.running import Gain, plain, require_no_type, run
 from meshlab_spectral.warned import Warned, warned, with_warnings
 
 if TYPE_CHECKING:
@@ -110,7 +111,7 @@ def filter_scalars(
         raise ArgumentError("values: pass numbers to filter, one for each vertex")
     if fwhm is not None:
         options, named = _smoothing(fwhm, options, named, gain)
-    parameters = _options_for(options, named, gain)
+    parameters = _parameters(options, named, gain)
     given_values = np.asarray(array_of(mesh_or_vertices, values, "values"))
     Q = real_numbers(given_values, "values")
     if Q.ndim not in (1, 2) or len(Q) != len(V) or Q.size == 0:
@@ -121,13 +122,14 @@ def filter_scalars(
 
     labels = _warning_of_labels(given_values)
 
+    filter_ = partial(run, _SCALARS, V, F, parameters, gain=gain, threads=threads)
     fields = Q.reshape(len(V), -1)
     filtered = np.empty_like(fields)
     reports: list[dict[str, Any]] = [{}] * fields.shape[1]
     with progress_callback(progress) as on_progress:
         for block in _filtered_together(fields):
-            done = _run(_SCALARS, V, F, parameters, fields[:, block], gain, on_progress, threads)
-            filtered[:, block] = _values(done)
+            done = filter_(values=fields[:, block], progress=on_progress)
+            filtered[:, block] = done.values
             for j, column in zip(block, done.columns or [done.report], strict=True):
                 reports[j] = Report(plain(column))
     if Q.ndim == 2:
@@ -173,7 +175,7 @@ def filter_colors(
     V, F = mesh_arrays(mesh_or_vertices, faces)
     if colors is None:
         raise ArgumentError("colors: pass red, green and blue of each vertex")
-    parameters = _options_for(options, named, gain)
+    parameters = _parameters(options, named, gain)
     C = np.asarray(array_of(mesh_or_vertices, colors, "colors"))
     most = 1 if np.issubdtype(C.dtype, np.floating) else 255
     real_numbers(C, "colors")
@@ -183,9 +185,11 @@ def filter_colors(
             "numbers from 0 to 1"
         )
     levels = np.round(C[:, :3] * (255 / most)).astype(np.float64)
-    done = _run(_COLORS, V, F, parameters, levels, gain, progress, threads)
+    filter_ = partial(run, _COLORS, V, F, parameters, gain=gain, threads=threads)
+    done = filter_(values=levels, progress=progress)
+    assert done.values is not None
     filtered = C.astype(np.float64 if most == 1 else np.uint8)
-    filtered[:, :3] = _values(done) / (255 / most)
+    filtered[:, :3] = done.values / (255 / most)
     return filtered, cast(ColorsReport, done.plain_report)
 
 
@@ -228,7 +232,7 @@ def _smoothing(
     return None, {**named, "feature_size": _SIZE_PER_FWHM * fwhm}
 
 
-def _options_for(options: FilterOptions | None, named: Any, gain: Gain | None) -> FilterOptions:
+def _parameters(options: FilterOptions | None, named: Any, gain: Gain | None) -> dict[str, Any]:
     """Return the options of a call; raise OptionError for those that apply only to shapes."""
     for name in named:
         if name not in TransferKeywords.__annotations__:
@@ -237,33 +241,8 @@ def _options_for(options: FilterOptions | None, named: Any, gain: Gain | None) -
                 f"{name}: not for values on a fixed shape; choose "
                 f"{', '.join(TransferKeywords.__annotations__)}"
             )
-    parameters = FilterOptions.from_call(options, named)
+    chosen = FilterOptions.from_call(options, named)
     if gain is not None:
-        require_no_type(parameters.filter_type)
-    return parameters
-
-
-def _run(
-    name: str,
-    V: NDArray[np.float64],
-    F: NDArray[np.integer],
-    options: FilterOptions,
-    values: NDArray[np.float64],
-    gain: Gain | None,
-    progress: Progress | bool | None,
-    threads: int | None,
-) -> Run:
-    """Filter values, n x c, with the options that a signal has."""
-    core_parameters = {
-        name: value
-        for name, value in options.core_parameters().items()
-        if name in TransferKeywords.__annotations__
-    }
-    return run(
-        name, V, F, core_parameters, values=values, gain=gain, progress=progress, threads=threads
-    )
-
-
-def _values(done: Run) -> NDArray[np.float64]:
-    assert done.values is not None
-    return done.values
+        require_no_type(chosen.filter_type)
+    parameters = chosen.core_parameters()
+    return {name: parameters[name] for name in TransferKeywords.__annotations__}

@@ -10,9 +10,9 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from meshlab_spectral.errors import OptionError
-from meshlab_spectral.filters.arrays import chosen_vertices, mesh_arrays
+from meshlab_spectral.filters.arrays import mesh_arrays, selected_vertices
 from meshlab_spectral.filters.keywords import takes_options
-from meshlab_spectral.filters.mesh_objects import array_of, takes_mesh_alone
+from meshlab_spectral.filters.mesh_objects import takes_mesh_alone
 from meshlab_spectral.filters.options import TextureKeywords, TextureOptions
 from meshlab_spectral.filters.progress import Progress
 from meshlab_spectral.filters.reports import TextureReport
@@ -167,19 +167,13 @@ def surface_texture(
     >>> bore = surface_texture(vertices, faces, form="cylinder", selection=faces_of_the_bore)
     """
     V, F = mesh_arrays(mesh_or_vertices, faces)
-    parameters = TextureOptions.from_call(options, _by_our_names(named))
-    part: dict[str, Any] = {}
-    selected = None
-    if selection is not None:
-        selected = chosen_vertices(array_of(mesh_or_vertices, selection, "selection"), len(V), F)
-        part["selected"] = True
-    elif parameters.selected:
-        raise OptionError("selected = True: pass the selected vertices or faces as selection")
+    parameters = TextureOptions.from_call(options, _by_our_names(named)).core_parameters()
+    selected = selected_vertices(mesh_or_vertices, selection, len(V), F, parameters)
     done = run(
         TextureOptions.FILTER,
         V,
         F,
-        {**parameters.core_parameters(), **part},
+        parameters,
         selected=selected,
         progress=progress,
         threads=threads,

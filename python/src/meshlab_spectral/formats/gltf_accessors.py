@@ -143,11 +143,6 @@ class Asset:
         target.write_bytes(self._serialized() if self._patched else self.data)
         return names
 
-    @property
-    def is_patched(self) -> bool:
-        """Whether anything differs from the file."""
-        return bool(self._patched)
-
     def read_buffers(self) -> None:
         """Read all buffers."""
         files: set[Path] = set()

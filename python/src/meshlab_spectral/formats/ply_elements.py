@@ -5,9 +5,11 @@ from __future__ import annotations
 import io
 import re
 from collections.abc import Callable
+from pathlib import Path
 from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
 from plyfile import PlyData, PlyElement, PlyListProperty
 
 from meshlab_spectral._core import binary_numbers
@@ -116,3 +118,16 @@ def row_type(element: PlyElement, order: str, size_of: Callable[[Any], int]) -> 
             shape = (size_of(fields),)
         fields.append((one.name, order + one.val_dtype, shape))
     return np.dtype(fields)
+
+
+def write_ply(path: Path, V: ArrayLike, F: ArrayLike, **more: NDArray[Any]) -> None:
+    """Write a mesh as a binary file; `more` are further properties of its vertices."""
+    columns = dict(zip("xyz", np.asarray(V, np.float64).T, strict=True)) | more
+    vertices = np.empty(len(columns["x"]), [(name, one.dtype) for name, one in columns.items()])
+    for name, column in columns.items():
+        vertices[name] = column
+    corners = np.asarray(F)
+    faces = np.empty(len(corners), [("vertex_indices", "i4", (3,))])
+    faces["vertex_indices"] = corners
+    described = PlyElement.describe
+    PlyData([described(vertices, "vertex"), described(faces, "face")]).write(str(path))

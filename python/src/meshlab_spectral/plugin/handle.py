@@ -9,13 +9,7 @@ from pathlib import Path
 
 
 def opened(plugin: Path) -> ctypes.CDLL:
-    """Open a library if it is loaded: a second copy of the plugin would have no warnings to report.
-
-    Raises
-    ------
-    OSError
-        When it is not loaded.
-    """
+    """Open a library; raise OSError unless it is loaded: a second copy would have no warnings."""
     if sys.platform == "win32":
         find = ctypes.WinDLL("kernel32").GetModuleHandleW
         find.argtypes, find.restype = [ctypes.c_wchar_p], ctypes.c_void_p

@@ -15,13 +15,10 @@ from meshlab_spectral.warned import Warned
 
 
 def last_warnings() -> list[Warned]:
-    """Return the warnings of the plugin's latest filter run in this thread, in its own words.
+    """Return the warnings of the plugin's latest filter run in this thread, unless it has failed.
 
-    They are sentences without the final full stop; none before the first run or after a failed one.
-    pymeshlab itself drops the strings of a filter's report.
-
-    Raises PluginError when pymeshlab has loaded another copy of the plugin than `load` would, or
-    the plugin is older than this package.
+    pymeshlab itself drops the strings of a filter's report. Raises PluginError when pymeshlab has
+    loaded another copy of the plugin than `load` would, or one older than this package.
     """
     return [Warned(*line.split(" ", 1)) for line in _last("warnings").splitlines()]
 

@@ -106,13 +106,7 @@ def threads() -> int | None:
 
 
 def given_memory_limit() -> int | None:
-    """Return the limit in bytes set by `set_memory_limit` or the environment; None: no limit.
-
-    Raises
-    ------
-    OptionError
-        When the environment variable is not a number above zero.
-    """
+    """Return the limit in bytes set by `set_memory_limit` or the environment; None: no limit."""
     text = os.environ.get(MEMORY)
     if text is None:
         return None

@@ -14,7 +14,7 @@ from meshlab_spectral import errors
 from meshlab_spectral.errors import FilterError
 from meshlab_spectral.plugin.failed_calls import corrected, is_interrupt, keep_failed
 from meshlab_spectral.plugin.library import function_of, last_error, last_summary, last_warnings
-from meshlab_spectral.plugin.loading import load, loaded_plugin
+from meshlab_spectral.plugin.loading import FILTER_NAME, load, loaded_plugin
 from meshlab_spectral.warned import with_warnings
 
 Array = NDArray[np.float64]
@@ -45,7 +45,10 @@ def mesh_set_of(
 
 
 def written_copy(
-    mesh: Any, name: str, vertices: Array | None = None, values: Array | None = None
+    mesh: Any,
+    vertices: Array | None = None,
+    values: Array | None = None,
+    name: str = FILTER_NAME,
 ) -> Any:
     """Return a copy of a `pymeshlab.Mesh` with what the filter `name` has returned, see `write`."""
     load()
@@ -88,13 +91,9 @@ def call_filter(mesh_set: Any, name: str, parameters: dict[str, Any]) -> dict[st
     """Apply a filter of the plugin to the current mesh of a MeshSet, as a script does.
 
     The plugin must be loaded; `name` is the filter's in Python, `parameters` are keyword arguments
-    for pymeshlab. Returns pymeshlab's report; in addition, in the plugin's words, "warnings", a
-    list of problems that were not errors, and "summary", what a filter that chooses by itself found
-    and did.
-
-    Raises FilterError when the filter rejects the mesh or the parameters; KeyboardInterrupt on
-    Ctrl-C, within 0.3 s, the mesh unchanged; PluginError when the warnings are not available, see
-    `last_warnings`.
+    for pymeshlab. Returns pymeshlab's report, with the warnings and the summary that it drops.
+    Raises FilterError when the filter rejects the mesh or the parameters, KeyboardInterrupt on
+    Ctrl-C, the mesh unchanged, and PluginError as from `last_warnings`.
     """
     import pymeshlab
 
