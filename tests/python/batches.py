@@ -14,6 +14,7 @@ import numpy as np
 import psutil
 import pymeshlab
 from commands import COMMAND
+from shapes import grid, quads
 
 REPORT = "batch_report.jsonl"
 
@@ -24,9 +25,7 @@ def make_meshes(folder: Path, count: int, seed: int = 0, rings: int = 12) -> lis
     rng = np.random.default_rng(seed)
     k = np.arange(rings)
     i, j = (index.ravel() for index in np.meshgrid(k, k))
-    a, b = i + rings * j, (i + 1) % rings + rings * j
-    c, d = ((corner + rings) % rings**2 for corner in (b, a))
-    F = np.vstack([np.column_stack([a, b, c]), np.column_stack([a, c, d])])
+    F = quads(grid(rings, rings, 0, 1).T)
     u, v = (index * 2 * np.pi / rings for index in (i, j))
     radius = 1 + 0.7 * np.cos(v)  # triangles that are not needles
     torus = np.column_stack([radius * np.cos(u), radius * np.sin(u), 0.7 * np.sin(v)])

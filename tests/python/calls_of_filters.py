@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from typing import Any, NamedTuple
 
 import numpy as np
 from fuzz.meshes import shape_of
 from numpy.typing import NDArray
+from shared_types import Decimated
 
 
 class Call(NamedTuple):
@@ -70,7 +70,7 @@ def inputs_of(V: NDArray[np.float64], F: NDArray[np.int32]) -> Inputs:
     )
 
 
-def inputs_named(name: str, decimated: Callable[..., Any]) -> Inputs:
+def inputs_named(name: str, decimated: Decimated) -> Inputs:
     """Return one of SHAPES. `decimated` is the fixture."""
     if SHAPES[name] is None:
         return inputs_of(*decimated("bunny.obj"))

@@ -136,10 +136,7 @@ def test_copies_of_files_at_urls_go_with_the_interrupted_batch_or_the_next_one(
 
 
 def test_a_killed_batch_leaves_no_process_and_resumes(
-    running: subprocess.Popen[str],
-    meshes: Path,
-    undisturbed: dict[str, bytes],
-    tmp_path: Path,
+    running: subprocess.Popen[str], meshes: Path, undisturbed: dict[str, bytes], tmp_path: Path
 ) -> None:
     processes = below(running)
     assert len(processes) == 2

@@ -12,6 +12,7 @@ from commands import command
 from meshlab_spectral import OptionError, filter_mesh
 from meshlab_spectral.batch.files import filter_files
 from meshlab_spectral.formats import ply
+from shapes import grid, quads
 from tiled_meshes import Array, Indices, write_ply
 
 OPTIONS: dict[str, Any] = {"feature_size": 8.0, "steps": 1}
@@ -22,11 +23,8 @@ def _terrain(side: int = 41) -> tuple[Array, Indices]:
     """A rough plane with edges of length 1."""
     x, y = (axis.ravel() for axis in np.meshgrid(np.arange(side), np.arange(side), indexing="ij"))
     height = 2 * np.sin(x / 5) + np.random.default_rng(0).normal(size=len(x)) / 4
-    a = np.arange(side * side).reshape(side, side)
-    a, b, c, d = (corners.ravel() for corners in (a[:-1, :-1], a[1:, :-1], a[1:, 1:], a[:-1, 1:]))
-    F = np.vstack([np.stack([a, b, c], -1), np.stack([a, c, d], -1)])
     V = np.column_stack([x, y, height]).astype("f4").astype(float)
-    return V, F
+    return V, quads(grid(side, side))
 
 
 @pytest.fixture
@@ -121,9 +119,7 @@ def test_levels_of_detail_have_no_gaps(folder: Path, tmp_path: Path) -> None:
         for column in range(3):
             cells = 4 * 2 ** ((row + column) % 3)
             x, y = np.meshgrid(np.arange(cells + 1), np.arange(cells + 1), indexing="ij")
-            k = np.arange((cells + 1) ** 2).reshape(cells + 1, cells + 1)
-            a, b, c, d = (q.ravel() for q in (k[:-1, :-1], k[1:, :-1], k[1:, 1:], k[:-1, 1:]))
-            F = np.vstack([np.stack([a, b, c], -1), np.stack([a, c, d], -1)])
+            F = quads(grid(cells + 1, cells + 1))
             x, y = (8 * one.ravel() / cells + 8 * k for one, k in ((x, row), (y, column)))
             height = np.where((x % 8 > 0) & (y % 8 > 0), np.sin(3 * x + 5 * y), 0)
             V = np.column_stack([x, y, 0.5 * height])

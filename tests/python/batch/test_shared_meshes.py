@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
@@ -10,13 +9,14 @@ from batches import REPORT, records
 from broken_meshes import make_broken_meshes
 from commands import arrays_of, command
 from meshlab_spectral.batch.inputs import find_inputs
+from shared_types import SharedMesh
 
 # It has vertices only.
 POINT_CLOUD = "bunny16k_points.ply"
 
 
 def test_all_good_meshes_are_filtered_and_all_bad_ones_reported(
-    shared_mesh: Callable[[str], Path], samples: Path, tmp_path: Path
+    shared_mesh: SharedMesh, samples: Path, tmp_path: Path
 ) -> None:
     folder = shared_mesh("dragon_40k.ply").parent
     broken, out = tmp_path / "broken", tmp_path / "out"

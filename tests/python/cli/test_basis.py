@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import subprocess
-from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -17,8 +16,7 @@ from helpers import diagonal, lower_part, mesh_set_of
 from meshlab_spectral import FilterError, Harmonics, OptionError, manifold_harmonics
 from meshlab_spectral.figures.harmonics import spread_modes
 from numpy.typing import NDArray
-
-Decimated = Callable[..., tuple[NDArray[Any], NDArray[Any]]]
+from shared_types import Decimated
 
 PRECIOUS = b"precious bytes of a file that was here before\n"
 TRIANGLE = np.array([[0.0, 0, 0], [1, 0, 0], [0, 1, 0]]), np.array([[0, 1, 2]])

@@ -12,14 +12,7 @@ import numpy as np
 import pymeshlab
 from batches import REPORT, contents, make_meshes, records
 from broken_meshes import make_broken_meshes
-from commands import (
-    PRECIOUS,
-    arrays_of,
-    assert_fails,
-    command,
-    command_on_terminal,
-    write_ply,
-)
+from commands import PRECIOUS, arrays_of, assert_fails, command, command_on_terminal, write_ply
 from helpers import FILTER, diagonal, largest_distance, percent
 from meshlab_spectral import FilterOptions
 from meshlab_spectral.filters.option_types import Length

@@ -13,14 +13,13 @@ import pytest
 from commands import command
 from helpers import mesh_set_of
 from meshlab_spectral import compare
+from shapes import sphere
 
 
 @pytest.fixture
 def pair(tmp_path: Path) -> tuple[Path, Path]:
     """A sphere, and the same faces on a larger one with a dent."""
-    made = pymeshlab.MeshSet()
-    made.create_sphere(subdiv=4)
-    V, F = made.current_mesh().vertex_matrix(), made.current_mesh().face_matrix()
+    V, F = sphere(4)
     a, b = tmp_path / "a.ply", tmp_path / "b.ply"
     mesh_set_of(V, F).save_current_mesh(str(a))
     W = 1.02 * V - np.outer(0.1 * np.exp(-20 * ((V - [1, 0, 0]) ** 2).sum(1)), [1, 0, 0])

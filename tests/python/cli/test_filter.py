@@ -5,9 +5,7 @@ from __future__ import annotations
 import json
 import re
 import shutil
-from collections.abc import Callable
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pymeshlab
@@ -18,6 +16,7 @@ from helpers import FILTER, lower_part, mesh_set_of, percent
 from meshlab_spectral import FilterOptions, OptionError, filter_mesh
 from meshlab_spectral.files.region_vertices import chosen_parts
 from meshlab_spectral.formats.document import Part
+from shared_types import Decimated
 
 
 def test_output_is_what_the_filter_computes(cow: Path, tmp_path: Path) -> None:
@@ -90,9 +89,7 @@ def test_the_table_tells_where_a_bound_was_reached(cow: Path, tmp_path: Path) ->
     assert re.search(rf"Bound reached at\W+{re.escape(share)} % of the surface", done.stdout)
 
 
-def test_an_open_surface_has_no_volume_in_the_table(
-    decimated: Callable[..., Any], tmp_path: Path
-) -> None:
+def test_an_open_surface_has_no_volume_in_the_table(decimated: Decimated, tmp_path: Path) -> None:
     mesh_set_of(*lower_part(*decimated("cow.obj"))).save_current_mesh(str(tmp_path / "half.ply"))
     done = command("filter", tmp_path / "half.ply", tmp_path / "smooth.ply", "--steps", 1)
     assert "Area" in done.stdout

@@ -223,11 +223,7 @@ def test_a_package_without_a_plugin_names_the_remedy(
         ("linux", {"HOME": "/home/zoe"}, "/home/zoe/.local/share"),
         ("linux", {"HOME": "/home/zoe", "XDG_DATA_HOME": "/data"}, "/data"),
         ("darwin", {"HOME": "/Users/zoe"}, "/Users/zoe/Library/Application Support"),
-        (
-            "win32",
-            {"APPDATA": "C:/Users/zoe/AppData/Roaming"},
-            "C:/Users/zoe/AppData/Roaming",
-        ),
+        ("win32", {"APPDATA": "C:/Users/zoe/AppData/Roaming"}, "C:/Users/zoe/AppData/Roaming"),
     ],
 )
 def test_the_folders_follow_the_rules_of_the_system(

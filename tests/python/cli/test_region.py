@@ -21,10 +21,7 @@ Arrays = tuple[NDArray[np.float64], NDArray[np.int32]]
 Select = Callable[[NDArray[np.float64]], NDArray[np.bool_]]
 
 REGIONS: dict[str, tuple[list[str], Select]] = {
-    "box": (
-        ["--box", "-inf,-inf,0.2,0.1,inf,inf"],
-        lambda V: (V[:, 2] >= 0.2) & (V[:, 0] <= 0.1),
-    ),
+    "box": (["--box", "-inf,-inf,0.2,0.1,inf,inf"], lambda V: (V[:, 2] >= 0.2) & (V[:, 0] <= 0.1)),
     "a box by any two corners": (["--box", "9,9,9,0,-9,-9"], lambda V: V[:, 0] >= 0),
     "where": (
         ["--where", "z > 0.2 && x + y < 0.1"],

@@ -14,14 +14,13 @@ import pytest
 from commands import PRECIOUS, command
 from helpers import mesh_set_of
 from meshlab_spectral import compare, surface_texture
+from shapes import grid, quads, sphere
 
 
 @pytest.fixture
 def rough(tmp_path: Path) -> Path:
     """A sphere with random heights."""
-    made = pymeshlab.MeshSet()
-    made.create_sphere(subdiv=5)
-    V, F = made.current_mesh().vertex_matrix(), made.current_mesh().face_matrix()
+    V, F = sphere(5)
     V = V * (1 + 0.003 * np.random.default_rng(1).standard_normal(len(V)))[:, None]
     path = tmp_path / "rough.ply"
     mesh_set_of(V, F).save_current_mesh(str(path))
@@ -129,13 +128,12 @@ def test_other_files_are_replaced_on_request_only(rough: Path, tmp_path: Path) -
 def block(tmp_path: Path) -> Path:
     """A closed box of 4 x 4 x 1 with a rough top."""
     n = 61
-    x, y = (grid.ravel() for grid in np.meshgrid(*2 * [np.linspace(0, 4, n)], indexing="ij"))
+    x, y = (axis.ravel() for axis in np.meshgrid(*2 * [np.linspace(0, 4, n)], indexing="ij"))
     rim = (x == 0) | (x == 4) | (y == 0) | (y == 4)
     wave = np.where(rim, 0, 0.02 * np.cos(2 * np.pi * x / 0.5))
     top, base = np.column_stack([x, y, 1 + wave]), np.column_stack([x, y, 0 * x])
-    i = np.arange(n * n).reshape(n, n)
-    a, b, c, d = (k.ravel() for k in (i[:-1, :-1], i[1:, :-1], i[1:, 1:], i[:-1, 1:]))
-    up = np.vstack([np.column_stack([a, b, c]), np.column_stack([a, c, d])])
+    i = grid(n, n)
+    up = quads(i)
     loop = np.concatenate([i[:-1, 0], i[-1, :-1], i[:0:-1, -1], i[0, :0:-1]])
     after, below = np.roll(loop, -1), n * n
     sides = [[loop, loop + below, after + below], [loop, after + below, after]]
@@ -153,11 +151,7 @@ def test_a_region_of_a_closed_block_is_its_top(block: Path, tmp_path: Path) -> N
     mask = tmp_path / "mask.txt"
     np.savetxt(mask, np.repeat([1, 0], 61 * 61))
     exact = 0.02 / np.sqrt(2) * (1 - 2**-4)
-    for region in (
-        ["--where", "nz > 0.5"],
-        ["--box", "0,0,0.5,4,4,inf"],
-        ["--mask", mask],
-    ):
+    for region in (["--where", "nz > 0.5"], ["--box", "0,0,0.5,4,4,inf"], ["--mask", mask]):
         done = command(*measure, *region)
         assert done.returncode == 0, done.stderr
         assert json.loads(done.stdout)["Sq"] == pytest.approx(exact, rel=0.03)

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import subprocess
 import sys
-from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -13,6 +12,7 @@ import numpy as np
 import pymeshlab
 from meshlab_spectral.figures.pictures import Panel, View
 from numpy.typing import NDArray
+from shared_types import Decimated
 from side_by_side import draw_side_by_side
 
 SCRIPTS = Path(__file__).resolve().parents[3] / "screenshots" / "scripts"
@@ -60,9 +60,7 @@ def test_the_demo_leaves_a_smoother_bunny_and_a_picture_of_both(
     assert np.abs(before - after).max() > 0.2
 
 
-def test_all_panels_have_the_camera_of_the_first(
-    decimated: Callable[..., Any], tmp_path: Path
-) -> None:
+def test_all_panels_have_the_camera_of_the_first(decimated: Decimated, tmp_path: Path) -> None:
     V, F = decimated("cow.obj")
     small = Panel("", 0.5 * V, F)
     whole = Panel("", V, F)
@@ -76,7 +74,7 @@ def test_all_panels_have_the_camera_of_the_first(
     assert 0.2 < drawn_share(second) / drawn_share(first) < 0.3
 
 
-def test_a_panel_is_lit_as_if_it_were_alone(decimated: Callable[..., Any], tmp_path: Path) -> None:
+def test_a_panel_is_lit_as_if_it_were_alone(decimated: Decimated, tmp_path: Path) -> None:
     panel = Panel("", *decimated("cow.obj"))
     for count, name in ((1, "alone.png"), (3, "beside.png")):
         draw_side_by_side([panel] * count, tmp_path / name, panel_size=(300, 200))

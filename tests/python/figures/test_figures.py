@@ -5,7 +5,6 @@ from __future__ import annotations
 import os
 import subprocess
 import sys
-from collections.abc import Callable
 from itertools import pairwise
 from pathlib import Path
 from typing import Any
@@ -28,6 +27,7 @@ from meshlab_spectral.filters.options import FilterOptions
 from numpy.typing import NDArray
 from paper import FIGURES
 from sequences import K, after
+from shared_types import Decimated
 from stability import BAND, LOW_PASS
 
 REPOSITORY = Path(__file__).resolve().parents[3]
@@ -47,7 +47,7 @@ def script(name: str, *arguments: object) -> subprocess.CompletedProcess[str]:
 
 
 @pytest.fixture
-def meshes(decimated: Callable[..., Any], tmp_path: Path) -> list[Path]:
+def meshes(decimated: Decimated, tmp_path: Path) -> list[Path]:
     """In place of the dragon and the angel: one lying, y up, and one standing, z up."""
     V, F = decimated("cow.obj", 1000)
     x, y, z = V.T
@@ -77,7 +77,7 @@ def test_every_figure_of_every_mesh_is_drawn(meshes: list[Path], tmp_path: Path)
 
 @pytest.mark.slow
 def test_all_pictures_are_drawn_and_their_numbers_recorded(
-    decimated: Callable[..., Any], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    decimated: Decimated, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(sheet, "_PAGE_PIXELS", 1e5)
     mesh_set = mesh_set_of(*decimated("cow.obj", 1000))
@@ -107,7 +107,7 @@ def test_all_pictures_are_drawn_and_their_numbers_recorded(
     ("options", "update"), [(LOW_PASS, "conformal"), (BAND, "full")], ids=["low-pass", "band"]
 )
 def test_sequences_show_intermediate_shapes_of_the_filter(
-    options: FilterOptions, update: Any, decimated: Callable[..., Any]
+    options: FilterOptions, update: Any, decimated: Decimated
 ) -> None:
     V, F = decimated("bunny.obj", 1000)
 
@@ -121,9 +121,7 @@ def test_sequences_show_intermediate_shapes_of_the_filter(
     np.testing.assert_array_equal(shapes[-1], whole)
 
 
-def test_harmonics_are_orthonormal_and_matched_in_any_order_and_sign(
-    decimated: Callable[..., Any],
-) -> None:
+def test_harmonics_are_orthonormal_and_matched_in_any_order_and_sign(decimated: Decimated) -> None:
     V, F = decimated("bunny.obj", 1000)
     d = lumped_areas(V, F)
     np.testing.assert_allclose(d, reference.lumped_areas(V, F), rtol=1e-12)
@@ -145,7 +143,7 @@ def test_a_mesh_too_small_for_its_eigenfunctions_is_refused(tmp_path: Path) -> N
     assert "Traceback" not in done.stderr
 
 
-def test_a_frame_holds_all_of_its_shapes(decimated: Callable[..., Any]) -> None:
+def test_a_frame_holds_all_of_its_shapes(decimated: Decimated) -> None:
     V, F = decimated("cow.obj", 1000)
     view = View.of_widest_side(V)
     large, small = Frame.row_by_row([[V, 1.5 * V], [0.5 * V]], view)
@@ -160,7 +158,7 @@ def test_a_frame_holds_all_of_its_shapes(decimated: Callable[..., Any]) -> None:
     assert drawn.any(axis=1).mean() > 0.9
 
 
-def test_signed_values_are_blue_and_red(decimated: Callable[..., Any]) -> None:
+def test_signed_values_are_blue_and_red(decimated: Decimated) -> None:
     V, F = decimated("cow.obj", 1000)
     view = View.of_widest_side(V)
     frame = Frame.around([V], view)

@@ -9,6 +9,7 @@ import draw
 import pytest
 import shown
 from figure_numbers import FILE, Numbers, differences, record, recorded
+from shared_types import SharedMesh
 
 SCREENSHOTS = Path(__file__).resolve().parents[3] / "screenshots"
 NAMES = [*draw.PICTURES, *shown.PICTURES]
@@ -29,9 +30,7 @@ def test_every_picture_is_made_by_a_script_and_has_numbers() -> None:
 
 @pytest.mark.slow
 @pytest.mark.parametrize("name", NAMES)
-def test_a_picture_shows_what_the_program_computes(
-    name: str, shared_mesh: Callable[[str], Path]
-) -> None:
+def test_a_picture_shows_what_the_program_computes(name: str, shared_mesh: SharedMesh) -> None:
     changed = differences(recorded(SCREENSHOTS)[f"{name}.png"], computed(name, shared_mesh))
     lines = "\n".join(["`make screenshots` redraws it; look at it", *changed])
     assert not changed, lines

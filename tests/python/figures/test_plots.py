@@ -30,12 +30,13 @@ from meshlab_spectral import (
 from meshlab_spectral.figures.pictures import to_full_colours
 from meshlab_spectral.figures.spectrum import draw_spectrum
 from numpy.typing import NDArray
+from shared_types import Decimated
 
 Mesh = tuple[NDArray[Any], NDArray[Any]]
 
 
 @pytest.fixture(scope="module")
-def mesh(decimated: Callable[..., Mesh]) -> Mesh:
+def mesh(decimated: Decimated) -> Mesh:
     return decimated("cow.obj", 1000)
 
 

@@ -13,21 +13,19 @@ import trimesh
 import trimesh.proximity
 from meshlab_spectral import MeshFileError, compare
 from numpy.typing import NDArray
+from shapes import grid, quads
+from shared_types import Decimated
 
 pytest.importorskip("pyvista", reason="the extra render is not installed")
 
 Array = NDArray[np.float64]
-Decimated = Callable[..., tuple[NDArray[Any], NDArray[Any]]]
 
 
-def grid(cells: int, size: float = 1.0) -> tuple[Array, NDArray[np.int64]]:
+def square(cells: int, size: float = 1.0) -> tuple[Array, NDArray[np.int64]]:
     """A square in the plane z = 0, with normals to +z."""
     x, y = np.meshgrid(*[np.linspace(0, size, cells + 1)] * 2, indexing="ij")
-    corner = np.arange((cells + 1) ** 2).reshape(cells + 1, -1)
-    a, b, c, d = (one.ravel() for one in (corner[:-1, :-1], corner[1:, :-1], corner[1:, 1:],
-                                          corner[:-1, 1:]))  # fmt: skip
-    F = np.vstack([np.column_stack([a, b, c]), np.column_stack([a, c, d])])
-    return np.column_stack([x.ravel(), y.ravel(), 0 * x.ravel()]), F
+    V = np.column_stack([x.ravel(), y.ravel(), 0 * x.ravel()])
+    return V, quads(grid(cells + 1, cells + 1))
 
 
 def shifted(V: Array, *by: float) -> Array:
@@ -90,7 +88,7 @@ def test_concentric_spheres_of_other_faces_are_their_gap_apart(scale: float) -> 
 
 def test_shifted_planes_are_the_shift_apart_on_its_side() -> None:
     for shift in (0.25, -0.25):
-        (V, F), (W, G) = grid(8), grid(5)
+        (V, F), (W, G) = square(8), square(5)
         result = compare((V, F), (shifted(W, 0, 0, shift), G))
         for one in result.deviations.values():
             np.testing.assert_allclose(one.values, shift, atol=1e-12)
@@ -211,7 +209,7 @@ def test_the_sign_at_every_edge_and_corner_is_that_of_the_side() -> None:
 
 
 def test_with_the_same_faces_a_displacement_is_split_along_normal_and_surface() -> None:
-    V, F = grid(6)
+    V, F = square(6)
     result = compare((V, F), (shifted(V, 0.3, 0, -0.4), F))
     assert result.same_faces
     parts = {name: one.values for name, one in result.deviations.items()}
@@ -221,7 +219,7 @@ def test_with_the_same_faces_a_displacement_is_split_along_normal_and_surface() 
 
 
 def test_statistics_are_those_over_the_surface_and_name_the_largest() -> None:
-    V, F = grid(40)
+    V, F = square(40)
     W = V + np.outer(V[:, 0] ** 2, [0, 0, 1])
     one = compare((V, F), (W, F)).deviations["normal"]
     assert one.mean == pytest.approx(1 / 3, rel=2e-3)
@@ -234,7 +232,7 @@ def test_statistics_are_those_over_the_surface_and_name_the_largest() -> None:
 
 
 def test_vertices_without_faces_do_not_count() -> None:
-    V, F = grid(4)
+    V, F = square(4)
     lost = np.vstack([V, [[0.0, 0, 99]]])
     moved = shifted(V, 0, 0, 1)
     for other in (np.vstack([moved, [[0.0, 0, 0]]]), moved):
@@ -245,7 +243,7 @@ def test_vertices_without_faces_do_not_count() -> None:
 
 
 def test_files_are_compared_as_their_arrays(tmp_path: Path) -> None:
-    V, F = grid(3)
+    V, F = square(3)
     for name, height in (("a.ply", 0.0), ("b.ply", 0.5)):
         rows = np.array([tuple(v) for v in shifted(V, 0, 0, height)], [(c, "f8") for c in "xyz"])
         faces = np.array([(face,) for face in F], [("vertex_indices", "i4", (3,))])
@@ -258,7 +256,7 @@ def test_files_are_compared_as_their_arrays(tmp_path: Path) -> None:
 
 
 def test_what_cannot_be_compared_is_named(tmp_path: Path) -> None:
-    V, F = grid(2)
+    V, F = square(2)
     hole = V.copy()
     hole[3] = np.nan
     with pytest.raises(ValueError, match="b has coordinates"):
@@ -271,11 +269,7 @@ def test_what_cannot_be_compared_is_named(tmp_path: Path) -> None:
 
 def strip(low: float, high: float, cells: int) -> tuple[NDArray[Any], NDArray[Any]]:
     x, y = (a.ravel() for a in np.meshgrid(np.linspace(low, high, cells + 1), np.arange(11) / 10))
-    k = np.arange(len(x)).reshape(11, cells + 1)
-    a, b, c, d = (one.ravel() for one in (k[:-1, :-1], k[:-1, 1:], k[1:, 1:], k[1:, :-1]))
-    return np.column_stack([x, y, 0 * x]), np.vstack(
-        [np.stack([a, b, c], 1), np.stack([a, c, d], 1)]
-    )
+    return np.column_stack([x, y, 0 * x]), quads(grid(11, cells + 1).T)
 
 
 def test_what_lies_beyond_a_rim_is_counted_apart() -> None:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -11,10 +10,10 @@ import spectral_reference as reference
 from helpers import assert_same, diagonal, mesh_set_of, percent, snapshot
 from meshlab_spectral import Artefacts, FilterError, OptionError, measure_artefacts
 from numpy.typing import NDArray
+from shared_types import Decimated
 
 AGREEMENT = 1e-7  # of the diagonal of the bounding box; parameters go through 32-bit floats
 
-Decimated = Callable[..., tuple[NDArray[Any], NDArray[Any]]]
 
 TRIANGLE = (np.array([[0.0, 0, 0], [1, 0, 0], [0, 1, 0]]), np.array([[0, 1, 2]]))
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -19,6 +18,7 @@ from helpers import (
     percent,
     snapshot,
 )
+from shared_types import Decimated
 
 MOVED = {"vertex_matrix", "vertex_normal_matrix", "face_normal_matrix"}
 # What each filter changes.
@@ -31,7 +31,7 @@ TARGETS: dict[str, tuple[dict[str, Any], set[str]]] = {
 
 
 @pytest.mark.parametrize("name", TARGETS)
-def test_every_other_attribute_is_kept(name: str, decimated: Callable[..., Any]) -> None:
+def test_every_other_attribute_is_kept(name: str, decimated: Decimated) -> None:
     mesh_set = decorated(*decimated("cow.obj"))
     mesh = mesh_set.current_mesh()
     before, custom_before, box = snapshot(mesh), custom_attributes(mesh), mesh.bounding_box()
@@ -61,9 +61,7 @@ def test_textures_are_kept(samples: Path) -> None:
     np.testing.assert_array_equal(mesh.wedge_tex_coord_matrix(), coordinates)
 
 
-def test_normals_and_bounding_box_are_those_of_the_new_shape(
-    decimated: Callable[..., Any],
-) -> None:
+def test_normals_and_bounding_box_are_those_of_the_new_shape(decimated: Decimated) -> None:
     mesh_set = mesh_set_of(*decimated("bunny.obj"))
     mesh_set.apply_filter(FILTER, feature_size=percent(20), steps=2, basis_update="conformal")
     mesh = mesh_set.current_mesh()
@@ -79,7 +77,7 @@ def test_normals_and_bounding_box_are_those_of_the_new_shape(
     assert np.median(at_corners) > 0.9
 
 
-def test_normals_are_meshlabs_to_the_last_bit(decimated: Callable[..., Any]) -> None:
+def test_normals_are_meshlabs_to_the_last_bit(decimated: Decimated) -> None:
     V, F = decimated("bunny.obj")
     V = np.vstack([V, [[1.0, 2.0, 3.0]]])  # of no face
     F = np.vstack([F, F[:1], F[-1:, [0, 0, 1]]])  # a face twice, and one without area
@@ -91,7 +89,7 @@ def test_normals_are_meshlabs_to_the_last_bit(decimated: Callable[..., Any]) -> 
         np.testing.assert_array_equal(getattr(mesh, normals)(), getattr(fresh, normals)())
 
 
-def test_other_meshes_of_the_set_are_unchanged(decimated: Callable[..., Any]) -> None:
+def test_other_meshes_of_the_set_are_unchanged(decimated: Decimated) -> None:
     mesh_set = mesh_set_of(*decimated("bone.ply"))
     mesh_set.add_mesh(pymeshlab.Mesh(*decimated("cow.obj")))
     before = snapshot(mesh_set.mesh(0))
@@ -101,7 +99,7 @@ def test_other_meshes_of_the_set_are_unchanged(decimated: Callable[..., Any]) ->
 
 @pytest.mark.parametrize("what", ["vertices", "faces"])
 def test_after_a_deletion_only_remaining_elements_count(
-    what: str, decimated: Callable[..., Any], tmp_path: Path
+    what: str, decimated: Decimated, tmp_path: Path
 ) -> None:
     """Deletion and filter run as one script, so that pymeshlab touches nothing in between."""
     V, F = decimated("cow.obj")

@@ -7,9 +7,7 @@ plugin's by round-off alone. That is what makes 1e-8 a statement about the eigen
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pymeshlab
@@ -18,9 +16,9 @@ import scipy.sparse.linalg
 import spectral_reference as reference
 from helpers import mesh_set_of
 from numpy.typing import NDArray
+from shared_types import Arrays, Decimated, Record, SharedMesh
 
 Array = NDArray[np.float64]
-Arrays = tuple[NDArray[Any], NDArray[Any]]
 
 K = 300
 AGREEMENT_OF_EIGENVALUES = 1e-8  # relative to each
@@ -82,9 +80,7 @@ def loaded(path: Path) -> pymeshlab.MeshSet:
     return mesh_set
 
 
-def assert_agrees_with_arpack(
-    mesh_set: pymeshlab.MeshSet, k: int, record: Callable[..., None]
-) -> Array:
+def assert_agrees_with_arpack(mesh_set: pymeshlab.MeshSet, k: int, record: Record) -> Array:
     """Compare the filter's basis with ARPACK's; return ARPACK's eigenvalues."""
     report = mesh_set.compute_scalar_manifold_harmonic_per_vertex(
         basis_size=k, laplacian="cotangent", store_basis=True
@@ -121,18 +117,18 @@ def assert_agrees_with_arpack(
 
 
 def test_a_basis_of_seven_components_agrees_with_arpack(
-    shared_mesh: Callable[[str], Path], record_property: Callable[..., None]
+    shared_mesh: SharedMesh, record_property: Record
 ) -> None:
     assert_agrees_with_arpack(loaded(shared_mesh("greek_helmet.obj")), K, record_property)
 
 
 def test_a_basis_of_a_sample_agrees_with_arpack(
-    sample_name: str, decimated: Callable[..., Arrays], record_property: Callable[..., None]
+    sample_name: str, decimated: Decimated, record_property: Record
 ) -> None:
     assert_agrees_with_arpack(mesh_set_of(*decimated(sample_name, 3_000)), K, record_property)
 
 
-def test_no_harmonic_of_a_sphere_is_missing(record_property: Callable[..., None]) -> None:
+def test_no_harmonic_of_a_sphere_is_missing(record_property: Record) -> None:
     mesh_set = pymeshlab.MeshSet()
     mesh_set.create_sphere(radius=1, subdiv=4)
     degrees = np.repeat(np.arange(13), 2 * np.arange(13) + 1)
@@ -159,7 +155,7 @@ def cube(cells: int) -> Arrays:
     return V.astype(float), place.ravel()[np.vstack(faces)]
 
 
-def test_no_harmonic_of_a_cube_is_missing(record_property: Callable[..., None]) -> None:
+def test_no_harmonic_of_a_cube_is_missing(record_property: Record) -> None:
     V, F = cube(20)
     lam = assert_agrees_with_arpack(mesh_set_of(V, F), K, record_property)
     doubles = np.sum(np.diff(lam) < 1e-6 * lam[1:])

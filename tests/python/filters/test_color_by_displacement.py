@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from typing import Any
 
 import numpy as np
 import pymeshlab
 import pytest
 from helpers import mesh_set_of
+from shared_types import Decimated
 
 FILTERS: dict[str, dict[str, Any]] = {
     "apply_coord_spectral_filter_fractional": {},
@@ -19,7 +19,7 @@ FILTERS: dict[str, dict[str, Any]] = {
 
 @pytest.mark.parametrize("name", FILTERS)
 def test_colours_are_the_displacement_along_the_normals_from_before(
-    name: str, decimated: Callable[..., Any]
+    name: str, decimated: Decimated
 ) -> None:
     mesh_set, alone = (mesh_set_of(*decimated("cow.obj")) for _ in range(2))
     mesh = mesh_set.current_mesh()
@@ -38,19 +38,12 @@ def test_colours_are_the_displacement_along_the_normals_from_before(
     share = np.clip(outward / extent, -1, 1)
     fade = 1 - np.abs(share)
     expected = np.column_stack(
-        [
-            np.where(share > 0, 1, fade),
-            fade,
-            np.where(share < 0, 1, fade),
-            np.ones_like(fade),
-        ]
+        [np.where(share > 0, 1, fade), fade, np.where(share < 0, 1, fade), np.ones_like(fade)]
     )
     np.testing.assert_allclose(mesh.vertex_color_matrix(), expected, atol=0.5001 / 255)
 
 
-def test_colours_of_the_file_are_kept_as_an_attribute(
-    decimated: Callable[..., Any],
-) -> None:
+def test_colours_of_the_file_are_kept_as_an_attribute(decimated: Decimated) -> None:
     mesh_set = mesh_set_of(*decimated("cow.obj"))
     mesh_set.compute_color_by_function_per_vertex(x="17", y="34", z="51")
     mesh_set.apply_filter("apply_coord_spectral_denoise", color_by_displacement=True, strength=0.0)

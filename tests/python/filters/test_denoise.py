@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable
 from typing import Any, get_args, get_type_hints
 
 import numpy as np
@@ -15,11 +14,11 @@ from helpers import length, lower_part, mesh_set_of, refusal
 from meshlab_spectral import DenoiseOptions, OptionError, denoise_mesh
 from numpy.typing import NDArray
 from scipy.ndimage import gaussian_filter
+from shapes import grid, quads, sphere
+from shared_types import Decimated, Record
 from spectral_reference import boundary_vertices
 
 DENOISE = "apply_coord_spectral_denoise"
-
-Decimated = Callable[..., tuple[NDArray[Any], NDArray[Any]]]
 
 
 def normals_of(V: Array, F: NDArray[Any]) -> Array:
@@ -54,7 +53,7 @@ def cube(cells: int) -> tuple[Array, NDArray[Any]]:
     return np.array(list(points), float), np.array(faces)
 
 
-def assert_near(Y: Array, expected: Array, F: NDArray[Any], record: Callable[..., None]) -> None:
+def assert_near(Y: Array, expected: Array, F: NDArray[Any], record: Record) -> None:
     """The plugin solves to 1 %; a face on the verge of folding may differ."""
     d = np.linalg.norm(Y - expected, axis=1) / mean_edge(expected, F)
     middle, most = np.quantile(d, [0.5, 0.99])
@@ -65,9 +64,7 @@ def assert_near(Y: Array, expected: Array, F: NDArray[Any], record: Callable[...
 
 # With .28 the last round ends within the solver's 1 % of its limit.
 @pytest.mark.parametrize("height", [0.1, 0.2, 0.3])
-def test_the_equations_agree_for_white_noise(
-    height: float, record_property: Callable[..., None]
-) -> None:
+def test_the_equations_agree_for_white_noise(height: float, record_property: Record) -> None:
     V, F = cube(16)
     X = noisy(V, F, height)
     edge = mean_edge(X, F)
@@ -84,7 +81,7 @@ def test_the_equations_agree_for_white_noise(
 
 @pytest.mark.parametrize("size", [1.5, 2.5, 4.0])
 def test_the_equations_agree_for_correlated_noise(
-    size: float, decimated: Decimated, record_property: Callable[..., None]
+    size: float, decimated: Decimated, record_property: Record
 ) -> None:
     V, F = decimated("cow.obj", 2000)
     edge = mean_edge(V, F)
@@ -220,8 +217,7 @@ def test_a_terrain_of_two_units_is_called_so(units: tuple[float, float], axis: i
     height = sum(30 * np.sin(a * x + b * y + c) for (a, b), c in zip(*waves, strict=True))
     height += rng.normal(0, 4, x.shape)
     V = np.stack([step * x / units[0], step * y / units[0], height / units[1]], -1).reshape(-1, 3)
-    i = (np.arange(44)[:, None] * 45 + np.arange(44)).ravel()
-    F = np.concatenate([np.stack([i, i + 45, i + 46], 1), np.stack([i, i + 46, i + 1], 1)])
+    F = quads(grid(45, 45))
     V = np.roll(V, axis - 2, axis=1) + rng.uniform(0, 60, 3)
     Y, report = denoise_mesh(V, F)
     np.testing.assert_array_equal(Y, V)
@@ -242,8 +238,7 @@ def test_vertices_of_a_depth_map_move_along_its_rays(seed: int) -> None:
     noise *= 1.2 / noise.std()
     rays = np.stack([x, y, np.ones_like(x)], -1).reshape(-1, 3)
     V, X = rays * depth.reshape(-1, 1), rays * (depth + noise).reshape(-1, 1)
-    i = (np.arange(n - 1)[:, None] * n + np.arange(n - 1)).ravel()
-    F = np.concatenate([np.stack([i, i + n, i + n + 1], 1), np.stack([i, i + n + 1, i + 1], 1)])
+    F = quads(grid(n, n))
     Y, report = denoise_mesh(X, F)
     assert report["summary"].startswith("scanner noise")
     moves = np.linalg.norm(Y - X, axis=1)
@@ -262,15 +257,15 @@ def test_vertices_of_a_depth_map_move_along_its_rays(seed: int) -> None:
 @pytest.mark.parametrize("seed", range(3))
 def test_specks_of_a_few_vertices_are_no_noise(seed: int) -> None:
     """The corners of a tetrahedron alternate like noise; a range scan has a thousand of them."""
-    sphere = pyvista.Icosphere(nsub=4)
+    ball = pyvista.Icosphere(nsub=4)
     corners = np.array([[1, 1, 1], [1, -1, -1], [-1, 1, -1], [-1, -1, 1.0]])
     rng = np.random.default_rng(seed)
-    points = [np.asarray(sphere.points, float)]
+    points = [np.asarray(ball.points, float)]
     for _ in range(150):
         points.append(0.03 * (corners + rng.normal(0, 0.15, (4, 3))) + rng.uniform(2, 4, 3))
     firsts = len(points[0]) + 4 * np.arange(150)
     sides = np.array([[0, 1, 2], [0, 3, 1], [0, 2, 3], [1, 3, 2]])
-    F = np.concatenate([sphere.regular_faces, (firsts[:, None, None] + sides).reshape(-1, 3)])
+    F = np.concatenate([ball.regular_faces, (firsts[:, None, None] + sides).reshape(-1, 3)])
     V = np.concatenate(points)
     Y, report = denoise_mesh(V, F)
     np.testing.assert_array_equal(Y, V)
@@ -439,9 +434,7 @@ def test_noise_in_a_volume_of_distances_is_removed() -> None:
 
 def test_noise_in_a_mesh_finer_than_its_data_is_removed() -> None:
     """Weak noise, too: a mesh is subdivided once, the clean one stays."""
-    made = pymeshlab.MeshSet()
-    made.create_sphere(subdiv=4)
-    coarse, F = made.current_mesh().vertex_matrix(), made.current_mesh().face_matrix()
+    coarse, F = sphere(4)
     coarse = coarse * (1 + 0.1 * np.sin(3 * coarse[:, :1]) * np.cos(4 * coarse[:, 1:2]))
 
     def subdivided(height: float) -> tuple[Array, NDArray[Any]]:

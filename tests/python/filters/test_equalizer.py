@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -24,6 +23,8 @@ from helpers import (
 )
 from meshlab_spectral.plugin.library import last_summary, last_warnings
 from numpy.typing import NDArray
+from shapes import sphere
+from shared_types import Decimated
 
 EQUALIZER = "apply_coord_spectral_equalizer"
 TIMES = (32, 16, 8, 4, 2, 1)
@@ -33,7 +34,7 @@ Arrays = tuple[NDArray[np.float64], NDArray[Any]]
 
 
 @pytest.fixture(scope="module")
-def cow(decimated: Callable[..., Any]) -> Arrays:
+def cow(decimated: Decimated) -> Arrays:
     V, F = decimated("cow.obj", 2400)
     return V, F
 
@@ -106,10 +107,7 @@ def test_a_slider_is_a_custom_transfer_function_with_its_points(
 
 @pytest.mark.parametrize("gain", [0.0, 0.5, 2.0])
 def test_details_finer_than_the_smallest_size_follow_the_last_slider(gain: float) -> None:
-    sphere = pymeshlab.MeshSet()
-    sphere.create_sphere(subdiv=4)
-    mesh = sphere.current_mesh()
-    V, F = mesh.vertex_matrix(), mesh.face_matrix()
+    V, F = sphere(4)
     noise = 0.002 * np.random.default_rng(3).standard_normal(len(V))
     size = length(5 * mean_edge(V, F))  # most of the noise is finer
     found = equalized((1 + noise)[:, None] * V, F, gain_1x=gain, smallest_size=size)
@@ -145,9 +143,7 @@ def test_an_invalid_smallest_size_is_refused_by_name(size: float, cow: Arrays) -
     assert "smallest_size" in refusal(mesh_set, EQUALIZER, gain_2x=2.0, smallest_size=length(size))
 
 
-def test_a_quick_run_reports_its_error_and_an_accurate_one_keeps_the_tolerance(
-    cow: Arrays,
-) -> None:
+def test_a_quick_run_reports_its_error_and_an_accurate_one_keeps_the_tolerance(cow: Arrays) -> None:
     V, F = cow
     for accurate in (False, True):
         mesh_set = mesh_set_of(V, F)

@@ -19,6 +19,7 @@ from meshlab_spectral import (
     manifold_harmonics,
 )
 from meshlab_spectral.plugin.loading import FILTERS
+from shared_types import Decimated
 
 DENOISE, ARTEFACTS = FILTERS["Spectral Denoise"], FILTERS["Spectral Artefacts"]
 HARMONICS, SPECTRUM = FILTERS["Manifold Harmonics"], FILTERS["Geometry Spectrum"]
@@ -52,7 +53,7 @@ SIZES_OF_THE_MESH = {"filter_type": "custom", "transfer_function": "20%:1, 6e:2"
 
 @pytest.mark.parametrize(("name", "parameters", "named"), REFUSED)
 def test_a_refused_parameter_is_named_and_the_mesh_is_unchanged(
-    name: str, parameters: dict[str, Any], named: str, decimated: Callable[..., Any]
+    name: str, parameters: dict[str, Any], named: str, decimated: Decimated
 ) -> None:
     mesh_set = mesh_set_of(*decimated("cow.obj", 2400))
     assert mesh_set.current_mesh().vertex_number() == 1202
@@ -79,9 +80,7 @@ def test_no_mesh_at_all_is_refused() -> None:
 
 
 @pytest.mark.parametrize("name", FILTERS.values())
-def test_a_point_cloud_is_refused_with_a_way_to_a_surface(
-    name: str, decimated: Callable[..., Any]
-) -> None:
+def test_a_point_cloud_is_refused_with_a_way_to_a_surface(name: str, decimated: Decimated) -> None:
     V, _ = decimated("cow.obj")
     mesh_set = pymeshlab.MeshSet()
     mesh_set.add_mesh(
@@ -97,7 +96,7 @@ def test_a_point_cloud_is_refused_with_a_way_to_a_surface(
 @pytest.mark.parametrize("parameters", [{}, SIZES_OF_THE_MESH], ids=["default", "custom"])
 @pytest.mark.parametrize("value", [np.nan, np.inf, -np.inf])
 def test_coordinates_that_are_not_numbers_are_counted_and_located(
-    value: float, parameters: dict[str, Any], decimated: Callable[..., Any]
+    value: float, parameters: dict[str, Any], decimated: Decimated
 ) -> None:
     V, F = decimated("cow.obj")
     V = V.copy()
@@ -113,7 +112,7 @@ def test_coordinates_that_are_not_numbers_are_counted_and_located(
 
 @pytest.mark.parametrize("name", FILTERS.values())
 def test_coordinates_beyond_single_precision_are_refused_as_such(
-    name: str, decimated: Callable[..., Any]
+    name: str, decimated: Decimated
 ) -> None:
     V, F = decimated("cow.obj")
     V = V.copy()
@@ -128,7 +127,7 @@ def test_coordinates_beyond_single_precision_are_refused_as_such(
 
 @pytest.mark.parametrize("scale", [1e75, 1e-60])
 def test_the_advice_against_numbers_beyond_single_precision_helps(
-    scale: float, decimated: Callable[..., Any]
+    scale: float, decimated: Decimated
 ) -> None:
     V, F = decimated("cow.obj")
     mesh_set = mesh_set_of(scale * V, F)
@@ -141,7 +140,7 @@ def test_the_advice_against_numbers_beyond_single_precision_helps(
 
 
 def test_faces_without_area_are_refused_with_the_remedy_that_the_robust_laplacian_is(
-    decimated: Callable[..., Any],
+    decimated: Decimated,
 ) -> None:
     V, F = decimated("cow.obj")
     V = V.copy()
@@ -158,9 +157,7 @@ def test_faces_without_area_are_refused_with_the_remedy_that_the_robust_laplacia
     assert np.isfinite(mesh_set.current_mesh().vertex_matrix()).all()
 
 
-def test_a_failure_after_some_steps_leaves_the_mesh_unchanged(
-    decimated: Callable[..., Any],
-) -> None:
+def test_a_failure_after_some_steps_leaves_the_mesh_unchanged(decimated: Decimated) -> None:
     # So strong a low-pass makes triangles collapse after some steps.
     mesh_set = mesh_set_of(*decimated("cow.obj"))
     before = snapshot(mesh_set.current_mesh())
@@ -202,7 +199,7 @@ def test_parts_that_would_shrink_to_nothing_are_refused_with_advice() -> None:
     assert "choose a smaller feature_size" in message
 
 
-def test_too_large_a_gain_is_refused_as_too_steep(decimated: Callable[..., Any]) -> None:
+def test_too_large_a_gain_is_refused_as_too_steep(decimated: Decimated) -> None:
     assert refusal(mesh_set_of(*decimated("cow.obj")), pass_gain=1e30).endswith(
         "choose a smaller pass_gain"
     )

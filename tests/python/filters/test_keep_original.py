@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from typing import Any
-
 import numpy as np
 import pytest
 from helpers import mesh_set_of
+from shared_types import Decimated
 
 
 @pytest.mark.parametrize(
@@ -18,9 +16,7 @@ from helpers import mesh_set_of
         "apply_coord_spectral_equalizer",
     ],
 )
-def test_the_layer_is_the_input_and_the_current_mesh_stays(
-    name: str, decimated: Callable[..., Any]
-) -> None:
+def test_the_layer_is_the_input_and_the_current_mesh_stays(name: str, decimated: Decimated) -> None:
     cow = decimated("cow.obj")
     mesh_set, alone = mesh_set_of(*cow), mesh_set_of(*cow)
     gains = {"gain_8x": 2.0} if name.endswith("equalizer") else {}

@@ -10,6 +10,7 @@ import pytest
 import robust_laplacian
 from helpers import lower_part
 from meshlab_spectral import laplacian
+from shapes import grid, quads
 
 
 @pytest.mark.parametrize("name", ["bunny.obj", "cow.obj", "bone.ply"])
@@ -26,8 +27,7 @@ def test_the_default_is_that_of_robust_laplacian(name: str, decimated: Any) -> N
 def test_lengths_are_mollified_by_the_mean_of_the_edges() -> None:
     """Not of the sides, among which those within a boundary count twice."""
     V = np.array([[x, y, 0.0] for x in range(6) for y in range(4)])
-    a = np.array([4 * x + y for x in range(5) for y in range(3)])
-    F = np.concatenate([np.c_[a, a + 4, a + 5], np.c_[a, a + 5, a + 1]])
+    F = quads(grid(6, 4))
     V += 0.3 * np.random.default_rng(0).normal(size=V.shape)
     V[5] = 0.5 * (V[0] + V[4]) + 1e-6  # a flat triangle
     expected, _ = robust_laplacian.mesh_laplacian(V, F)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -16,10 +15,9 @@ from helpers import assert_same, lower_part, mesh_set_of, snapshot
 from meshlab_spectral import OptionError, manifold_harmonics
 from meshlab_spectral.files.meshes import load_arrays
 from numpy.typing import NDArray
+from shared_types import Decimated
 
 HARMONICS = "compute_scalar_manifold_harmonic_per_vertex"
-
-Decimated = Callable[..., tuple[NDArray[Any], NDArray[Any]]]
 
 
 def eigenpairs(

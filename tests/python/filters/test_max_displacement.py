@@ -2,26 +2,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from pathlib import Path
 from typing import Any
 
 import numpy as np
-import pymeshlab
 import pytest
 from meshlab_spectral import denoise_mesh, filter_mesh
 from meshlab_spectral.errors import OptionError
 from meshlab_spectral.files.meshes import load_arrays
 from numpy.typing import NDArray
+from shapes import sphere
+from shared_types import SharedMesh
 
 Array = NDArray[np.float64]
 
 
 def noisy_sphere() -> tuple[Array, NDArray[Any]]:
     """A sphere of radius 1, with noise of a fifth of an edge along its normals."""
-    made = pymeshlab.MeshSet()
-    made.create_sphere(subdiv=5)
-    V, F = made.current_mesh().vertex_matrix(), made.current_mesh().face_matrix()
+    V, F = sphere(5)
     noise = 0.007 * np.random.default_rng(3).standard_normal(len(V))
     return V * (1 + noise)[:, None], F
 
@@ -54,9 +51,7 @@ def test_no_vertex_moves_farther(bound: float) -> None:
 
 def crown() -> tuple[Array, NDArray[Any]]:
     """A tooth: four cusps and the grooves between them, on a rounded block."""
-    made = pymeshlab.MeshSet()
-    made.create_sphere(subdiv=5)
-    V, F = made.current_mesh().vertex_matrix(), made.current_mesh().face_matrix()
+    V, F = sphere(5)
     d = V / np.linalg.norm(V, axis=1)[:, None]
     azimuth, across = np.arctan2(d[:, 1], d[:, 0]), np.hypot(d[:, 0], d[:, 1])
     cusps = 0.36 * np.maximum(d[:, 2], 0) * across**2 * np.cos(4 * azimuth)
@@ -65,7 +60,7 @@ def crown() -> tuple[Array, NDArray[Any]]:
 
 @pytest.mark.parametrize("name", ["fandisk.off", "crown", "lionstatue.obj"])
 def test_a_bound_of_three_noise_heights_costs_no_normals(
-    name: str, shared_mesh: Callable[[str], Path]
+    name: str, shared_mesh: SharedMesh
 ) -> None:
     """On a part by CAD, a tooth and a statue, with noise of a fifth of an edge."""
     truth, F = crown() if name == "crown" else load_arrays(shared_mesh(name))

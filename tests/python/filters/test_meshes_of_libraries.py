@@ -91,9 +91,7 @@ def test_a_mesh_of_trimesh_keeps_its_type_and_metadata() -> None:
 
 def test_a_mesh_of_meshio_keeps_its_precision() -> None:
     mesh = meshio.Mesh(
-        V.astype(np.float32),
-        {"triangle": F, "line": F[:2, :2]},
-        point_data={"height": V[:, 2]},
+        V.astype(np.float32), {"triangle": F, "line": F[:2, :2]}, point_data={"height": V[:, 2]}
     )
     moved, _ = filter_mesh(mesh, feature_size="30%")
     assert isinstance(moved, meshio.Mesh)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable
 from pathlib import Path
 from typing import Any, cast, get_args, get_type_hints
 
@@ -19,6 +18,7 @@ from meshlab_spectral import (
     denoise_mesh,
     filter_mesh,
 )
+from shared_types import Decimated
 
 CHOICES = {
     name: get_args(type_)
@@ -160,7 +160,7 @@ def test_a_number_is_a_length_in_the_units_of_the_mesh() -> None:
         FilterOptions(feature_size=cast(Any, -1))
 
 
-def test_options_may_be_given_as_one_object_or_by_name(decimated: Callable[..., Any]) -> None:
+def test_options_may_be_given_as_one_object_or_by_name(decimated: Decimated) -> None:
     V, F = decimated("cow.obj", 1000)
     by_name, _ = filter_mesh(V, F, feature_size="10%", steps=1)
     as_object, _ = filter_mesh(V, F, FilterOptions(feature_size=Length(10, "%"), steps=1))
@@ -173,7 +173,7 @@ def test_options_may_be_given_as_one_object_or_by_name(decimated: Callable[..., 
     np.testing.assert_array_equal(same, V)
 
 
-def test_a_size_in_mean_edges_is_that_length(decimated: Callable[..., Any]) -> None:
+def test_a_size_in_mean_edges_is_that_length(decimated: Decimated) -> None:
     V, F = decimated("bunny.obj", 1000)
     edges = [np.linalg.norm(V[F[:, i]] - V[F[:, (i + 1) % 3]], axis=1) for i in range(3)]
     _, report = filter_mesh(V, F, feature_size="7.5e", steps=1)

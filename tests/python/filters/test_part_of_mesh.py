@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -24,8 +23,7 @@ from helpers import (
 from meshlab_spectral import filter_mesh
 from meshlab_spectral.plugin.library import last_warnings
 from numpy.typing import NDArray
-
-Decimated = Callable[..., tuple[NDArray[Any], NDArray[Any]]]
+from shared_types import Decimated, SharedMesh
 
 SIZE = {"feature_size": percent(6), "steps": 2}
 
@@ -78,9 +76,7 @@ def bends(V: NDArray[Any], F: NDArray[Any]) -> tuple[NDArray[Any], NDArray[Any]]
 
 
 @pytest.mark.parametrize("name", ["igea.ply", "stanford-bunny.obj"])
-def test_no_crease_appears_at_the_border_of_a_selection(
-    name: str, shared_mesh: Callable[[str], Path]
-) -> None:
+def test_no_crease_appears_at_the_border_of_a_selection(name: str, shared_mesh: SharedMesh) -> None:
     mesh_set = pymeshlab.MeshSet()
     mesh_set.load_new_mesh(str(shared_mesh(name)))
     mesh = mesh_set.current_mesh()

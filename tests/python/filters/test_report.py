@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -21,6 +20,7 @@ from helpers import (
     percent,
 )
 from meshlab_spectral import filter_mesh
+from shared_types import Decimated
 
 
 @pytest.mark.parametrize(
@@ -32,7 +32,7 @@ from meshlab_spectral import filter_mesh
     ids=["low-pass", "enhancement"],
 )
 def test_measures_agree_with_those_of_numpy(
-    sample_name: str, parameters: dict[str, Any], decimated: Callable[..., Any]
+    sample_name: str, parameters: dict[str, Any], decimated: Decimated
 ) -> None:
     V, F = decimated(sample_name)
     Y, report = filter_arrays(V, F, **parameters)
@@ -52,15 +52,13 @@ def test_measures_agree_with_those_of_numpy(
         assert report[name] == pytest.approx(value, rel=1e-9), name
 
 
-def test_only_a_closed_surface_has_a_volume(decimated: Callable[..., Any]) -> None:
+def test_only_a_closed_surface_has_a_volume(decimated: Decimated) -> None:
     V, F = decimated("cow.obj")
     assert filter_arrays(V, F, steps=1)[1]["has_volume"]
     assert not filter_arrays(*lower_part(V, F), steps=1)[1]["has_volume"]
 
 
-def test_feature_size_is_a_percentage_of_the_diagonal_or_a_length(
-    decimated: Callable[..., Any],
-) -> None:
+def test_feature_size_is_a_percentage_of_the_diagonal_or_a_length(decimated: Decimated) -> None:
     V, F = decimated("cow.obj")
     _, of_diagonal = filter_arrays(V, F, feature_size=percent(8), steps=1)
     assert of_diagonal["feature_size"] == pytest.approx(0.08 * diagonal(V), rel=1e-6)
@@ -69,7 +67,7 @@ def test_feature_size_is_a_percentage_of_the_diagonal_or_a_length(
 
 
 def test_a_filter_script_saved_and_loaded_gives_the_same_result(
-    decimated: Callable[..., Any], tmp_path: Path
+    decimated: Decimated, tmp_path: Path
 ) -> None:
     V, F = decimated("cow.obj")
     original = mesh_set_of(V, F)

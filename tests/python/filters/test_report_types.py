@@ -31,10 +31,7 @@ RUNS: dict[str, list[Callable[[], Any]]] = {
         lambda: denoise_mesh(V, F)[1],
         lambda: denoise_mesh(V, F, store_noise_height=True)[1],
     ],
-    "ScalarsReport": [
-        lambda: filter_scalars(V, F, V[:, 0])[1],
-        lambda: filter_scalars(V, F, V)[1],
-    ],
+    "ScalarsReport": [lambda: filter_scalars(V, F, V[:, 0])[1], lambda: filter_scalars(V, F, V)[1]],
     "ColorsReport": [lambda: filter_colors(V, F, np.abs(V))[1]],
     "TextureReport": [
         lambda: surface_texture(V, F, waviness=0.5).report,

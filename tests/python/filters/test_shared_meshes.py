@@ -5,7 +5,6 @@ from __future__ import annotations
 import json
 import subprocess
 import sys
-from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -14,6 +13,7 @@ import pymeshlab
 import pytest
 from meshlab_spectral import measure_artefacts
 from meshlab_spectral.plugin.loading import FILTERS
+from shared_types import SharedMesh
 
 
 def filtered(
@@ -28,7 +28,7 @@ def filtered(
 
 
 def test_with_the_defaults_no_vertex_moves_farther_than_the_feature_size(
-    shared_mesh: Callable[[str], Path],
+    shared_mesh: SharedMesh,
 ) -> None:
     folder = shared_mesh("elephant.ply").parent
     files = [file for file in sorted(folder.iterdir()) if file.suffix in {".ply", ".obj", ".off"}]
@@ -58,16 +58,14 @@ def test_with_the_defaults_no_vertex_moves_farther_than_the_feature_size(
     ],
 )
 def test_a_strong_low_pass_of_a_closed_mesh_stays_finite(
-    name: str, percentage: float, shared_mesh: Callable[[str], Path]
+    name: str, percentage: float, shared_mesh: SharedMesh
 ) -> None:
     mesh_set, report = filtered(shared_mesh(name), percentage, steps=10, basis_update="full")
     assert np.isfinite(mesh_set.current_mesh().vertex_matrix()).all()
     assert report["max_displacement"] > 0
 
 
-def test_one_strong_low_pass_of_the_dragon_takes_few_solves(
-    shared_mesh: Callable[[str], Path],
-) -> None:
+def test_one_strong_low_pass_of_the_dragon_takes_few_solves(shared_mesh: SharedMesh) -> None:
     _, report = filtered(shared_mesh("dragon_40k.ply"), steps=1)
     assert report["accuracy_reached"]
     assert report["error_estimate"] <= 1e-6
@@ -75,9 +73,7 @@ def test_one_strong_low_pass_of_the_dragon_takes_few_solves(
     assert report["solves"] / 3 <= 40
 
 
-def test_conformal_steps_leave_the_dragon_smoother_than_one_shot(
-    shared_mesh: Callable[[str], Path],
-) -> None:
+def test_conformal_steps_leave_the_dragon_smoother_than_one_shot(shared_mesh: SharedMesh) -> None:
     dragon = shared_mesh("dragon_40k.ply")
     one_shot, first = filtered(dragon, steps=1, basis_update="none")
     conformal, second = filtered(dragon, steps=10, basis_update="conformal")
@@ -96,10 +92,7 @@ ALL_NEAR_CREASES = "the whole surface is within this distance of its boundary or
 # Mesh -> the calls that end with an error, and words of it. `make bench-contract` has all meshes.
 ERRORS: dict[str, dict[str, str]] = {
     "T.ply": {
-        **dict.fromkeys(
-            ("filter truncated", "harmonics large"),
-            "choose at most 19",
-        ),
+        **dict.fromkeys(("filter truncated", "harmonics large"), "choose at most 19"),
         **dict.fromkeys(("texture default", "texture cotangent"), ALL_NEAR_CREASES),
     },
     "bunny16k_points.ply": {"": "point cloud"},
@@ -117,7 +110,7 @@ ERRORS: dict[str, dict[str, str]] = {
 
 @pytest.mark.parametrize("name", ERRORS)
 def test_every_filter_takes_a_real_mesh_at_three_settings_or_says_what_to_choose(
-    name: str, shared_mesh: Callable[[str], Path], tmp_path: Path
+    name: str, shared_mesh: SharedMesh, tmp_path: Path
 ) -> None:
     table = tmp_path / "rows.json"
     done = subprocess.run(

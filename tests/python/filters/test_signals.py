@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -12,24 +11,10 @@ import pymeshlab
 import pytest
 import pyvista
 import spectral_reference as reference
-from helpers import (
-    FILTER,
-    assert_same,
-    length,
-    lower_part,
-    mesh_set_of,
-    percent,
-    refusal,
-    snapshot,
-)
-from meshlab_spectral import (
-    FilterError,
-    FilterOptions,
-    OptionError,
-    filter_colors,
-    filter_scalars,
-)
+from helpers import FILTER, assert_same, length, lower_part, mesh_set_of, percent, refusal, snapshot
+from meshlab_spectral import FilterError, FilterOptions, OptionError, filter_colors, filter_scalars
 from numpy.typing import NDArray
+from shared_types import Decimated, Record
 from transfer_functions import RESPONSES, TYPES, gain_of
 
 QUALITY = "apply_scalar_spectral_filter_per_vertex"
@@ -38,7 +23,6 @@ TARGETS = {QUALITY: "vertex_scalar_array", COLOR: "vertex_color_matrix"}
 AGREEMENT = 1e-6  # of the range of the field
 
 Array = NDArray[np.float64]
-Decimated = Callable[..., tuple[NDArray[Any], NDArray[Any]]]
 
 TRIANGLE = np.array([[0.0, 0, 0], [1, 0, 0], [0, 1, 0]]), np.array([[0, 1, 2]])
 
@@ -80,7 +64,7 @@ def expected_signals(
 
 @pytest.mark.parametrize("kind", TYPES)
 def test_filtered_quality_agrees_with_scipy(
-    kind: str, sample_name: str, decimated: Decimated, record_property: Callable[..., None]
+    kind: str, sample_name: str, decimated: Decimated, record_property: Record
 ) -> None:
     V, F = decimated(sample_name)
     Q = noisy_field(V)

@@ -6,27 +6,19 @@ from collections.abc import Callable
 from typing import Any
 
 import numpy as np
-import pymeshlab
 import pytest
 import spectral_reference as reference
 from helpers import lower_part
 from meshlab_spectral import FilterError, Harmonics, OptionError, manifold_harmonics, shape_dna
 from meshlab_spectral.filters.harmonics import heat_times, wave_energies
 from numpy.typing import NDArray
+from shapes import sphere
 
 Array = NDArray[np.float64]
 Mesh = tuple[NDArray[Any], NDArray[Any]]
 Decimated = Callable[..., Mesh]
 
 DEGREE = 6  # spherical harmonics up to this one: (DEGREE + 1)^2 functions
-
-
-def sphere(subdivisions: int) -> Mesh:
-    """Make an icosphere of radius 1."""
-    mesh_set = pymeshlab.MeshSet()
-    mesh_set.create_sphere(subdiv=subdivisions)
-    V, F = mesh_set.current_mesh().vertex_matrix(), mesh_set.current_mesh().face_matrix()
-    return V / np.linalg.norm(V, axis=1)[:, None], F
 
 
 @pytest.fixture(scope="module")
@@ -87,9 +79,7 @@ def test_shape_dna_of_a_sphere_is_that_of_spherical_harmonics() -> None:
     np.testing.assert_allclose(unscaled, degree * (degree + 1) / 100, rtol=5e-3)
 
 
-def test_shape_dna_entries_do_not_depend_on_size_position_or_count(
-    decimated: Decimated,
-) -> None:
+def test_shape_dna_entries_do_not_depend_on_size_position_or_count(decimated: Decimated) -> None:
     V, F = decimated("cow.obj")
     turn = np.linalg.qr(np.random.default_rng(4).normal(size=(3, 3)))[0]
     dna = shape_dna(V, F, 30)

@@ -2,23 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import fields
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 import spectral_reference as reference
-from helpers import (
-    assert_same,
-    diagonal,
-    filter_arrays,
-    length,
-    lower_part,
-    mesh_set_of,
-    snapshot,
-)
+from helpers import assert_same, diagonal, filter_arrays, length, lower_part, mesh_set_of, snapshot
 from meshlab_spectral import (
     FilterError,
     GeometrySpectrum,
@@ -28,10 +18,9 @@ from meshlab_spectral import (
 )
 from meshlab_spectral.files.meshes import load_arrays
 from numpy.typing import NDArray
+from shared_types import Decimated, SharedMesh
 
 OCTAVES = 1e-2  # relative accuracy of an octave's energy
-
-Decimated = Callable[..., tuple[NDArray[Any], NDArray[Any]]]
 
 
 def reference_spectrum(
@@ -195,7 +184,7 @@ def test_the_height_and_feature_size_of_noise_are_reported(
 
 
 def test_noise_in_a_range_scan_is_distinguished_from_its_relief_and_its_rim(
-    shared_mesh: Callable[[str], Path],
+    shared_mesh: SharedMesh,
 ) -> None:
     V, F = load_arrays(shared_mesh("rangescan_lato000.ply"))
     raw = geometry_spectrum(V, F, 50, boundary="fixed")

@@ -13,6 +13,7 @@ import pyvista
 from helpers import mesh_set_of
 from meshlab_spectral import OptionError, surface_texture
 from numpy.typing import NDArray
+from shapes import grid, quads
 
 Array = NDArray[np.float64]
 TEXTURE = "compute_scalar_surface_texture_per_vertex"
@@ -59,16 +60,11 @@ def cylinder(radius: float, waves: int, amplitude: float) -> tuple[Array, NDArra
     """An open cylinder of waves around it."""
     around, along = 360, 120
     angle, z = np.meshgrid(
-        2 * np.pi * np.arange(around) / around,
-        np.linspace(0, 4 * radius, along),
-        indexing="ij",
+        2 * np.pi * np.arange(around) / around, np.linspace(0, 4 * radius, along), indexing="ij"
     )
     r = radius + amplitude * np.cos(waves * angle)
     V = np.column_stack([(r * np.cos(angle)).ravel(), (r * np.sin(angle)).ravel(), z.ravel()])
-    i, j = np.meshgrid(np.arange(around), np.arange(along - 1), indexing="ij")
-    a = (i * along + j).ravel()
-    b = ((i + 1) % around * along + j).ravel()
-    return V, np.vstack([np.column_stack([a, b, b + 1]), np.column_stack([a, b + 1, a + 1])])
+    return V, quads(grid(around, along, 0))
 
 
 @pytest.mark.parametrize("waves", [4, 6, 8, 16])
@@ -150,19 +146,12 @@ def test_waves_around_a_torus_have_the_parameters_of_a_sinusoid() -> None:
     length = 2 * np.pi / waves
     amplitude = 0.02 * length
     phi, theta = np.meshgrid(
-        *(2 * np.pi * np.arange(count) / count for count in (along, around)),
-        indexing="ij",
+        *(2 * np.pi * np.arange(count) / count for count in (along, around)), indexing="ij"
     )
     r = 1 + amplitude * np.cos(waves * theta + 5 * phi)  # at all phases
     rho = radius + r * np.cos(theta)
     V = np.stack([rho * np.cos(phi), rho * np.sin(phi), r * np.sin(theta)], axis=-1).reshape(-1, 3)
-    i, j = np.indices((along, around))
-    a, b, c, d = (
-        ((i + k) % along * around + (j + m) % around).ravel()
-        for k, m in ((0, 0), (1, 0), (1, 1), (0, 1))
-    )
-    F = np.vstack([np.column_stack([a, b, c]), np.column_stack([a, c, d])])
-    texture = surface_texture(V, F, waviness=3 * length)
+    texture = surface_texture(V, quads(grid(along, around, 0, 1)), waviness=3 * length)
     assert texture.vertices_left_out == 0
     assert texture.Sa == pytest.approx(2 / np.pi * amplitude, rel=0.01)
     assert texture.Sq == pytest.approx(amplitude / np.sqrt(2), rel=0.01)
@@ -214,10 +203,7 @@ def mirrored_map(cells: int) -> Array:
 def height_map(z: Array, step: float) -> tuple[Array, NDArray[Any]]:
     n, m = z.shape
     x, y = np.meshgrid(step * np.arange(n), step * np.arange(m), indexing="ij")
-    i = np.arange(n * m).reshape(n, m)
-    a, b, c, d = (k.ravel() for k in (i[:-1, :-1], i[1:, :-1], i[1:, 1:], i[:-1, 1:]))
-    F = np.vstack([np.column_stack([a, b, c]), np.column_stack([a, c, d])])
-    return np.column_stack([x.ravel(), y.ravel(), z.ravel()]), F
+    return np.column_stack([x.ravel(), y.ravel(), z.ravel()]), quads(grid(n, m))
 
 
 def test_a_height_map_has_the_moments_of_its_pixels() -> None:
@@ -279,11 +265,8 @@ def test_what_is_near_the_middle_of_a_long_crease_is_left_out() -> None:
     x, y = np.meshgrid(np.array([-4.0, *np.linspace(-2, 2, 41), 4]), np.linspace(0, 12, 4))
     y[:, 1:-1] += 0.5 * (np.arange(41) % 2)  # no vertex next to the crease is level with its ends
     z = 4 - np.abs(x)
-    i = np.arange(x.size).reshape(x.shape)
-    a, b, c, d = (k.ravel() for k in (i[:-1, :-1], i[:-1, 1:], i[1:, 1:], i[1:, :-1]))
-    F = np.vstack([np.column_stack([a, b, c]), np.column_stack([a, c, d])])
     V = np.column_stack([x.ravel(), y.ravel(), z.ravel()])
-    texture = surface_texture(V, F, waviness=0.6, form="none")
+    texture = surface_texture(V, quads(grid(*x.shape).T), waviness=0.6, form="none")
     near = np.abs(x.ravel()) * np.sqrt(2) < 0.6  # the distance to the ridge along the surface
     assert near.sum() > 20
     assert not texture.height[near].any()

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from meshlab_spectral import surface_texture
 from numpy.typing import NDArray
+from shapes import quads
 
 Array = NDArray[np.float64]
 
@@ -92,9 +93,7 @@ def mesh_of(form: str, h: Array) -> tuple[Array, NDArray[Any]]:
         i[-1] = i[0]
     elif form == "sphere":
         i[:, -1] = i[:, 0]
-    a, b, c, d = (k.ravel() for k in (i[:-1, :-1], i[1:, :-1], i[1:, 1:], i[:-1, 1:]))
-    F = np.vstack([np.column_stack([a, b, c]), np.column_stack([a, c, d])])
-    return np.stack(np.broadcast_arrays(*parts), axis=-1).reshape(-1, 3), F
+    return np.stack(np.broadcast_arrays(*parts), axis=-1).reshape(-1, 3), quads(i)
 
 
 def rms_slope(signal: str, form: str) -> float:

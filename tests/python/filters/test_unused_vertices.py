@@ -22,6 +22,7 @@ from meshlab_spectral import (
 from meshlab_spectral.plugin.library import last_warnings
 from meshlab_spectral.plugin.loading import FILTERS
 from numpy.typing import NDArray
+from shared_types import Decimated
 
 Array = NDArray[Any]
 Shape = tuple[Array, Array]
@@ -32,7 +33,7 @@ WITHOUT_PERCENTAGES = "compute_scalar_manifold_harmonic_per_vertex"
 
 
 @pytest.fixture
-def shape(decimated: Callable[..., Shape]) -> Shape:
+def shape(decimated: Decimated) -> Shape:
     """A bunny with noise that Spectral Denoise finds."""
     V, F = decimated("bunny.obj", 8000)
     noise = np.random.default_rng(1).standard_normal(V.shape)

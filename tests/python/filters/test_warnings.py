@@ -7,7 +7,6 @@ import re
 import subprocess
 import sys
 import threading
-from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -17,24 +16,20 @@ import pyvista
 from batches import REPORT, make_meshes, records
 from commands import command, messages_in, write_ply
 from helpers import FILTER, mesh_set_of, percent, refusal
-from meshlab_spectral import (
-    filter_files,
-    filter_mesh,
-    filter_scalars,
-)
+from meshlab_spectral import filter_files, filter_mesh, filter_scalars
 from meshlab_spectral.files.script import apply_script
 from meshlab_spectral.filters.options import TransferKeywords
 from meshlab_spectral.filters.running import SHELL
 from meshlab_spectral.plugin.library import last_warnings
 from meshlab_spectral.plugin.mesh_sets import call_filter
+from shapes import grid, quads
+from shared_types import Decimated
 
 TRIANGLE = np.array([[0.0, 0, 0], [1, 0, 0], [0, 1, 0]]), np.array([[0, 1, 2]])
 # Each falls short in a different way.
 INACCURATE = {"filter_type": "band-stop", "pass_gain": 1.0, "stop_gain": 0.0, "steps": 20}
 FEW_HARMONICS = {"spectrum": "truncated", "basis_size": 30, "steps": 1}
 EVERYTHING_FIXED = {"boundary": "fixed", "steps": 1}
-
-Decimated = Callable[..., tuple[np.ndarray, np.ndarray]]
 
 
 PROGRAM = """
@@ -382,9 +377,7 @@ def test_neither_a_tube_nor_a_duct_nor_a_box_of_six_faces_is_a_periodic_cell() -
     _, report = filter_mesh(np.array(cube.points, float), cube.regular_faces)
     assert not any("periodic" in text for text in report["warnings"])
     around, along = np.meshgrid(np.arange(32), np.arange(20), indexing="ij")
-    next_ = (around[:, :-1] + 1) % 32
-    a, b = 20 * around[:, :-1] + along[:, :-1], 20 * next_ + along[:, :-1]
-    F = np.vstack([np.stack([a, b, b + 1], -1), np.stack([a, b + 1, a + 1], -1)]).reshape(-1, 3)
+    F = quads(grid(32, 20, 0))
     angle = 2 * np.pi * around / 32
     x, y = np.cos(angle), np.sin(angle)
     for side in (1, np.maximum(abs(x), abs(y))):

@@ -4,18 +4,7 @@ from __future__ import annotations
 
 from hypothesis import strategies as st
 
-WORDS = (
-    b"nan",
-    b"1e400",
-    b"-1",
-    b"99999999999",
-    b"0",
-    b"\0",
-    b"\xff\xfe",
-    b"]}",
-    b"<x>",
-    b"\n",
-)
+WORDS = (b"nan", b"1e400", b"-1", b"99999999999", b"0", b"\0", b"\xff\xfe", b"]}", b"<x>", b"\n")
 Damage = tuple[str, float, float, bytes]
 
 

@@ -34,11 +34,7 @@ TARGETS = {
         "vertex_normal_matrix",
         "face_normal_matrix",
     },
-    "apply_coord_spectral_denoise": {
-        "vertex_matrix",
-        "vertex_normal_matrix",
-        "face_normal_matrix",
-    },
+    "apply_coord_spectral_denoise": {"vertex_matrix", "vertex_normal_matrix", "face_normal_matrix"},
     "apply_coord_spectral_equalizer": {
         "vertex_matrix",
         "vertex_normal_matrix",

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -12,6 +11,7 @@ from meshlab_spectral import FilterError, OptionError, filter_mesh, set_threads,
 from meshlab_spectral.plugin.limits import THREADS, threads_each
 from meshlab_spectral.workers.process import NO_LIMITS
 from meshlab_spectral.workers.processes import Processes
+from shared_types import Decimated
 
 
 class NotStartedError(Exception):
@@ -23,9 +23,7 @@ def _restored(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.delenv(THREADS, raising=False)
 
 
-def test_results_have_the_same_bits_for_every_number_of_threads(
-    decimated: Callable[..., tuple[np.ndarray, np.ndarray]],
-) -> None:
+def test_results_have_the_same_bits_for_every_number_of_threads(decimated: Decimated) -> None:
     V, F = decimated("bunny.obj", 20000)
     results = []
     for count in (1, 2, 3, None):
@@ -37,7 +35,7 @@ def test_results_have_the_same_bits_for_every_number_of_threads(
 
 
 def test_an_invalid_number_of_threads_is_refused(
-    monkeypatch: pytest.MonkeyPatch, decimated: Callable[..., tuple[np.ndarray, np.ndarray]]
+    monkeypatch: pytest.MonkeyPatch, decimated: Decimated
 ) -> None:
     with pytest.raises(OptionError, match="threads = 0: give a number"):
         set_threads(0)

@@ -55,10 +55,7 @@ def test_only_coordinates_and_normals_of_what_moves_are_replaced(sample, tmp_pat
     assert 0 < np.count_nonzero((V != X).any(axis=1)) < len(V)
     nearest = cKDTree(V).query(before["coordinates"])[1]
     np.testing.assert_allclose(after["coordinates"], X[nearest], rtol=0, atol=SINGLE)
-    if source.suffix in (
-        ".3mf",
-        ".ply",
-    ):  # not read by trimesh
+    if source.suffix in (".3mf", ".ply"):  # not read by trimesh
         return
     moved = trimesh.load(folder / "moved" / sample.name, process=False, force="mesh")
     bounds = np.array([X.min(axis=0), X.max(axis=0)])
