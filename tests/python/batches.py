@@ -12,8 +12,8 @@ from typing import Any
 
 import numpy as np
 import psutil
-import pymeshlab
 from commands import COMMAND
+from helpers import mesh_set_of
 from shapes import grid, quads
 
 REPORT = "batch_report.jsonl"
@@ -32,8 +32,7 @@ def make_meshes(folder: Path, count: int, seed: int = 0, rings: int = 12) -> lis
     paths = []
     for number in range(count):
         V = torus + 0.02 * rng.standard_normal(torus.shape)
-        mesh_set = pymeshlab.MeshSet()
-        mesh_set.add_mesh(pymeshlab.Mesh(V, F.astype(np.int32)))
+        mesh_set = mesh_set_of(V, F.astype(np.int32))
         paths.append(folder / f"torus_{number:03}.ply")
         mesh_set.save_current_mesh(str(paths[-1]))
     return paths

@@ -12,6 +12,7 @@ import select
 import signal
 import subprocess
 import sys
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -145,6 +146,32 @@ def command_on_terminal(*arguments: object) -> tuple[int, bytes, bytes]:
 def messages_in(stderr: str) -> str:
     """Standard error without progress, of which a busy machine prints more."""
     return re.sub(r"^\[[^\]]+\] .*\n", "", stderr, flags=re.MULTILINE)
+
+
+def python(
+    *arguments: object,
+    timeout: float = 300,
+    check: bool = False,
+    preexec_fn: Callable[[], object] | None = None,
+    **environment: str,
+) -> subprocess.CompletedProcess[str]:
+    """Run Python, with variables of the environment besides those that there are."""
+    return subprocess.run(
+        [sys.executable, *map(str, arguments)],
+        env={**os.environ, **environment},
+        capture_output=True,
+        text=True,
+        timeout=timeout,
+        check=check,
+        preexec_fn=preexec_fn,
+    )
+
+
+def succeeded(*arguments: object, **environment: Any) -> subprocess.CompletedProcess[str]:
+    """Run a command that must succeed."""
+    done = command(*arguments, **environment)
+    assert done.returncode == 0, done.stderr
+    return done
 
 
 def assert_fails(done: subprocess.CompletedProcess[str], code: int, *words: str) -> None:

@@ -20,9 +20,15 @@ FILTER = "apply_coord_spectral_filter_fractional"
 _refusing_mesh_sets: list[pymeshlab.MeshSet] = []
 
 
-def mesh_set_of(V: NDArray[Any], F: NDArray[Any]) -> pymeshlab.MeshSet:
+def mesh_set_of(V: NDArray[Any], F: NDArray[Any], **data: Any) -> pymeshlab.MeshSet:
     mesh_set = pymeshlab.MeshSet()
-    mesh_set.add_mesh(pymeshlab.Mesh(V, F))
+    mesh_set.add_mesh(pymeshlab.Mesh(V, F, **data))
+    return mesh_set
+
+
+def loaded(path: Path) -> pymeshlab.MeshSet:
+    mesh_set = pymeshlab.MeshSet()
+    mesh_set.load_new_mesh(str(path))
     return mesh_set
 
 

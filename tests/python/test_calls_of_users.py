@@ -20,7 +20,7 @@ import pymeshlab
 import pytest
 import pyvista as pv
 import trimesh
-from commands import COMMAND, command
+from commands import COMMAND, command, succeeded
 from meshlab_spectral import denoise_mesh, filter_mesh, laplacian
 
 Calls = dict[str, Callable[[Path], Any]]
@@ -63,8 +63,7 @@ def shell(*arguments: object, mesh: bytes = b"") -> subprocess.CompletedProcess[
 
 def shown(*arguments: object) -> str:
     """What a command that succeeds prints."""
-    done = command(*arguments)
-    assert done.returncode == 0, done.stderr
+    done = succeeded(*arguments)
     return done.stdout
 
 

@@ -5,11 +5,10 @@ from __future__ import annotations
 import ast
 import importlib
 import os
-import subprocess
-import sys
 from pathlib import Path
 
 import pytest
+from commands import python
 
 REPOSITORY = Path(__file__).resolve().parents[2]
 SCRIPTS = [
@@ -33,13 +32,8 @@ def test_every_name_that_a_script_imports_from_the_package_exists(script: Path) 
 
 def test_every_promise_is_listed_once() -> None:
     folders = (str(REPOSITORY / "tests" / name) for name in ("benchmarks", "python"))
-    listed = subprocess.run(
-        [sys.executable, "-m", "promises", "--list", "--large"],
-        env=os.environ | {"PYTHONPATH": os.pathsep.join(folders)},
-        capture_output=True,
-        text=True,
-        timeout=120,
-        check=True,
+    listed = python(
+        "-m", "promises", "--list", "--large", check=True, PYTHONPATH=os.pathsep.join(folders)
     )
     rows = [line for line in listed.stdout.splitlines() if line.startswith("  ")]
     assert len(set(rows)) == len(rows) > 50

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 from batches import make_meshes
-from commands import command
+from commands import succeeded
 
 FOLDER = str(Path(__file__).parent / "without_posix")
 
@@ -31,8 +31,6 @@ def test_only_the_package_is_refused_posix_modules(importer: str) -> None:
 
 def test_a_file_and_a_batch_are_filtered_without_posix(tmp_path: Path) -> None:
     (mesh,) = make_meshes(tmp_path / "in", 1)
-    single = command("filter", mesh, tmp_path / "out.ply", PYTHONPATH=FOLDER)
-    assert single.returncode == 0, single.stderr
-    batch = command("batch", tmp_path / "in", "--output", tmp_path / "out", PYTHONPATH=FOLDER)
-    assert batch.returncode == 0, batch.stderr
+    succeeded("filter", mesh, tmp_path / "out.ply", PYTHONPATH=FOLDER)
+    succeeded("batch", tmp_path / "in", "--output", tmp_path / "out", PYTHONPATH=FOLDER)
     assert (tmp_path / "out" / mesh.name).read_bytes() == (tmp_path / "out.ply").read_bytes()

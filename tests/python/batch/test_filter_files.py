@@ -5,7 +5,6 @@ from __future__ import annotations
 import os
 import shutil
 import signal
-import subprocess
 import sys
 import tempfile
 import threading
@@ -20,7 +19,7 @@ import numpy as np
 import psutil
 import pytest
 from batches import REPORT, contents, make_meshes, records, wait_until
-from commands import PRECIOUS, command, is_worker
+from commands import PRECIOUS, is_worker, python, succeeded
 from helpers import filter_arrays, percent
 from meshlab_spectral import (
     BatchError,
@@ -66,7 +65,7 @@ def test_filter_files_gives_a_result_for_every_file(meshes: Path, tmp_path: Path
     broken = tmp_path / "broken.ply"
     broken.write_text("no mesh")
     out, by_command = tmp_path / "out", tmp_path / "by_command"
-    assert command("batch", meshes, "--output", by_command, "--steps", 1).returncode == 0
+    succeeded("batch", meshes, "--output", by_command, "--steps", 1)
     results = list(filter_files([meshes, broken], out, workers=1, steps=1))
     assert sorted(result.outcome for result in results) == ["failed", *["filtered"] * 6]
     assert contents(out) == contents(by_command)
@@ -171,13 +170,7 @@ for result in filter_files(sys.argv[1], sys.argv[2], workers=1, steps=1):
 def test_a_script_needs_no_guard(meshes: Path, tmp_path: Path) -> None:
     script = tmp_path / "script.py"
     script.write_text(UNGUARDED)
-    done = subprocess.run(
-        [sys.executable, str(script), str(meshes), str(tmp_path / "out")],
-        capture_output=True,
-        text=True,
-        timeout=120,
-        check=False,
-    )
+    done = python(script, meshes, tmp_path / "out")
     assert done.stdout.split() == ["filtered"] * 6, done.stderr
 
 
@@ -194,13 +187,7 @@ def test_a_program_that_ends_before_its_batch_does_so_at_once(tmp_path: Path) ->
     small.rename(small.with_name("a.ply"))
     make_meshes(tmp_path / "in", 2, rings=300)  # minutes of work, on any machine
     begin = time.monotonic()
-    done = subprocess.run(
-        [sys.executable, "-c", UNFINISHED, str(tmp_path / "in"), str(tmp_path / "out")],
-        capture_output=True,
-        text=True,
-        timeout=120,
-        check=False,
-    )
+    done = python("-c", UNFINISHED, tmp_path / "in", tmp_path / "out")
     assert (done.returncode, done.stdout, done.stderr) == (0, "filtered\n", "")
     assert time.monotonic() - begin < 15
     assert sorted(contents(tmp_path / "out")) == ["a.ply"]

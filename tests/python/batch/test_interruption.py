@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pytest
 from batches import REPORT, alive, below, contents, make_meshes, records, start_batch, wait_until
-from commands import command, messages_in
+from commands import messages_in, succeeded
 
 MESHES = 12
 CHILD = "meshlab_spectral.child"
@@ -29,7 +29,7 @@ def meshes(tmp_path_factory: pytest.TempPathFactory) -> Path:
 @pytest.fixture(scope="module")
 def undisturbed(meshes: Path, tmp_path_factory: pytest.TempPathFactory) -> dict[str, bytes]:
     out = tmp_path_factory.mktemp("undisturbed") / "out"
-    assert command("batch", meshes, "--output", out, *OPTIONS).returncode == 0
+    succeeded("batch", meshes, "--output", out, *OPTIONS)
     return contents(out)
 
 
@@ -54,8 +54,7 @@ def assert_only_whole_files(out: Path, undisturbed: dict[str, bytes]) -> None:
 def assert_resumes(meshes: Path, out: Path, undisturbed: dict[str, bytes]) -> None:
     done_before = len(records(out / REPORT))
     assert 2 <= done_before < MESHES
-    done = command("batch", meshes, "--output", out, *OPTIONS, "--resume")
-    assert done.returncode == 0, done.stderr
+    done = succeeded("batch", meshes, "--output", out, *OPTIONS, "--resume")
     assert f"{done_before} already done" in done.stdout
     assert contents(out) == undisturbed
     assert not list(out.rglob("*.partial"))
@@ -128,7 +127,7 @@ def test_copies_of_files_at_urls_go_with_the_interrupted_batch_or_the_next_one(
         process.communicate()
     if number == signal.SIGKILL:
         assert list(temporary.rglob("*.ply"))
-        assert command("batch", *batch, "--resume").returncode == 0
+        succeeded("batch", *batch, "--resume")
     else:
         assert process.returncode == 130
         assert not list(temporary.rglob("*meshlab-spectral*"))

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 from batches import REPORT, records
-from commands import command
+from commands import command, succeeded
 from meshlab_spectral import OptionError, filter_mesh
 from meshlab_spectral.batch.files import filter_files
 from meshlab_spectral.formats import ply
@@ -83,13 +83,13 @@ def test_labels_that_touch_stay_together(folder: Path, tmp_path: Path) -> None:
 def test_one_changed_file_changes_all(folder: Path, tmp_path: Path) -> None:
     out = tmp_path / "out"
     arguments = ["batch", folder, "-o", out, "--joined", "--feature-size", 8, "--steps", 1]
-    assert command(*arguments).returncode == 0
+    succeeded(*arguments)
     again = command(*arguments, "--resume")
     assert "4 already done" in again.stdout + again.stderr
     before = (out / "part0.ply").read_bytes()
     V, F = _terrain()
     write_ply(folder / "part3.ply", V + np.array([0, 0, 1e-3]), F)
-    assert command(*arguments, "--resume").returncode == 0
+    succeeded(*arguments, "--resume")
     assert len(records(out / REPORT)) == 8
     assert (out / "part0.ply").read_bytes() != before
 

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import posixpath
-import subprocess
 import sys
 from pathlib import Path
 
 import pytest
+from commands import python
 from hypothesis import given
 from hypothesis import strategies as st
 from meshlab_spectral import InputError
@@ -164,13 +164,7 @@ os._exit(0)
 
 @pytest.mark.parametrize("ending", sorted((READABLE & WRITABLE) | {"mlp", "mesh3", "dxf"}))
 def test_the_formats_are_those_of_pymeshlab(ending: str, tmp_path: Path) -> None:
-    done = subprocess.run(
-        [sys.executable, "-c", PROBE, str(tmp_path), ending],
-        capture_output=True,
-        text=True,
-        timeout=60,
-        check=False,
-    )
+    done = python("-c", PROBE, tmp_path, ending)
     said = done.stdout.split()
     assert ("writes" in said) == (ending in WRITABLE)
     assert ("reads" in said) == (ending in READABLE)

@@ -9,11 +9,18 @@ import time
 from pathlib import Path
 
 import numpy as np
-import pymeshlab
 from batches import REPORT, contents, make_meshes, records
 from broken_meshes import make_broken_meshes
-from commands import PRECIOUS, arrays_of, assert_fails, command, command_on_terminal, write_ply
-from helpers import FILTER, diagonal, largest_distance, percent
+from commands import (
+    PRECIOUS,
+    arrays_of,
+    assert_fails,
+    command,
+    command_on_terminal,
+    succeeded,
+    write_ply,
+)
+from helpers import FILTER, diagonal, largest_distance, loaded, percent
 from meshlab_spectral import FilterOptions
 from meshlab_spectral.filters.option_types import Length
 
@@ -51,8 +58,7 @@ def test_good_meshes_are_filtered_and_bad_ones_reported(cow: Path, tmp_path: Pat
     options = FilterOptions(feature_size=Length(8, "%"), steps=1).as_dict()
     for record in by_name.values():
         assert record["options"] == options
-    mesh_set = pymeshlab.MeshSet()
-    mesh_set.load_new_mesh(str(good[0]))
+    mesh_set = loaded(good[0])
     mesh_set.apply_filter(FILTER, feature_size=percent(8), steps=1)
     expected = mesh_set.current_mesh().vertex_matrix()
     np.testing.assert_array_equal(arrays_of(out / good[0].name)[0], expected)
@@ -64,14 +70,12 @@ def test_resume_skips_what_is_proved_done_and_does_the_rest(tmp_path: Path) -> N
     source, out = tmp_path / "in", tmp_path / "out"
     paths = make_meshes(source, 4)
     batch = ["batch", source, "--output", out, "--steps", 1, "--workers", 1, "--json"]
-    assert command(*batch).returncode == 0
+    succeeded(*batch)
     before = contents(out)
     make_meshes(source, 1, seed=9)  # new content for the first
     (out / paths[1].name).unlink()
     (out / paths[2].name).write_bytes(PRECIOUS)
-    done = command(*batch, "--resume")
-    assert done.returncode == 0, done.stderr
-    summary = json.loads(done.stdout)
+    summary = json.loads(succeeded(*batch, "--resume").stdout)
     assert (summary["filtered"], summary["already_done"], summary["failed"]) == (3, 1, 0)
     after = contents(out)
     assert after.keys() == before.keys()
@@ -86,7 +90,7 @@ def test_resume_skips_what_is_proved_done_and_does_the_rest(tmp_path: Path) -> N
 def test_resume_restores_materials_and_textures(samples: Path, tmp_path: Path) -> None:
     source, out = samples / "bunny10k_textured.obj", tmp_path / "out"
     batch = ["batch", source, "--output", out, "--steps", 1, "--workers", 1]
-    assert command(*batch).returncode == 0
+    succeeded(*batch)
     before = contents(out)
     material, texture = "bunny10k_textured.mtl", "TextureDouble_A.png"
     assert before.keys() == {source.name, material, texture}
@@ -112,8 +116,7 @@ def test_no_existing_file_is_replaced_unasked(tmp_path: Path) -> None:
     paths[1].rmdir()
     paths[1].with_suffix(".moved").rename(paths[1])
     assert_fails(command(*batch, "--resume"), 2, "already exist", "report of the run", REPORT)
-    done = command(*batch, "--overwrite")
-    assert done.returncode == 0, done.stderr
+    succeeded(*batch, "--overwrite")
     assert len(arrays_of(out / paths[1].name)[0]) == 144
     # A file that is older than the first run of a report is not one of its outputs.
     now = time.time()
@@ -121,17 +124,16 @@ def test_no_existing_file_is_replaced_unasked(tmp_path: Path) -> None:
     (out / REPORT).write_text(last)
     assert_fails(command(*batch, "--resume"), 2, "already exist")
     (out / REPORT).write_text(first + last)
-    assert command(*batch, "--resume").returncode == 0
+    succeeded(*batch, "--resume")
 
 
 def test_a_dry_run_lists_the_outputs_and_does_nothing(tmp_path: Path) -> None:
     source = tmp_path / "in"
     make_meshes(source, 2)
     out = tmp_path / "out"
-    done = command(
+    done = succeeded(
         "batch", source, "--output", out, "--dry-run", "--name", "{stem}_x", "--format", "stl"
     )
-    assert done.returncode == 0
     assert done.stdout.splitlines() == [
         f"{source}/torus_{k:03}.ply -> {out}/torus_{k:03}_x.stl" for k in range(2)
     ]
@@ -145,8 +147,7 @@ def test_results_that_fell_short_are_counted_and_their_warnings_kept(
     write_ply(flat, "0 0 0\n1 0 0\n0 1 0", "3 0 1 2")
     batch = ["batch", cow, flat, "--output", out, "--boundary", "fixed", "--workers", 1]
     for more in ([], ["--resume"]):
-        done = command(*batch, "--steps", 1, *more)
-        assert done.returncode == 0, done.stderr
+        done = succeeded(*batch, "--steps", 1, *more)
         assert ", 1 with warnings in " in done.stdout
     warnings = {record["name"]: record["warnings"] for record in records(out / REPORT)}
     assert warnings["cow.obj"] == []
@@ -156,8 +157,7 @@ def test_results_that_fell_short_are_counted_and_their_warnings_kept(
 def test_a_format_without_faces_is_written_with_a_warning(cow: Path, tmp_path: Path) -> None:
     batch = ["batch", cow, "--output", tmp_path, "--workers", 1, "--format", "xyz"]
     for arguments, ending in ((batch, "xyz"), (["filter", cow, tmp_path / "one.XYZ"], "XYZ")):
-        done = command(*arguments, "--steps", 1)
-        assert done.returncode == 0
+        done = succeeded(*arguments, "--steps", 1)
         assert f"Warning: .{ending} files hold only points; the faces are not" in done.stderr
     assert sorted(contents(tmp_path)) == ["cow.xyz", "one.XYZ"]
 
@@ -195,7 +195,7 @@ def test_outputs_next_to_their_inputs_are_not_filtered_again(tmp_path: Path) -> 
         "--workers",
         1,
     ]
-    assert command(*batch).returncode == 0
+    succeeded(*batch)
     assert sorted(contents(source)) == ["torus_000.ply", "torus_000_x.ply"]
     done = command(*batch, "--resume")
     assert "0 filtered, 0 failed, 1 already done" in done.stdout
@@ -208,8 +208,8 @@ def test_a_recipe_gives_the_options_and_the_command_line_overrides_it(
     recipe, again = tmp_path / "a.toml", tmp_path / "b.toml"
     dry = ["batch", cow, "--output", tmp_path / "out", "--dry-run"]
     given = ["--feature-size", "3%", "--no-reinject-residual", "--steps", 4]
-    assert command(*dry, *given, "--save-recipe", recipe).returncode == 0
-    assert command(*dry, "--recipe", recipe, "--steps", 0, "--save-recipe", again).returncode == 0
+    succeeded(*dry, *given, "--save-recipe", recipe)
+    succeeded(*dry, "--recipe", recipe, "--steps", 0, "--save-recipe", again)
     before, after = recipe.read_text(), again.read_text()
     assert 'feature_size = "3%"' in after
     assert "reinject_residual = false" in after
@@ -217,17 +217,13 @@ def test_a_recipe_gives_the_options_and_the_command_line_overrides_it(
 
 
 def test_a_script_applies_our_filter_and_meshlabs_own(cow: Path, tmp_path: Path) -> None:
-    mesh_set = pymeshlab.MeshSet()
-    mesh_set.load_new_mesh(str(cow))
+    mesh_set = loaded(cow)
     mesh_set.apply_filter(FILTER, feature_size=percent(8), steps=2)
     mesh_set.apply_coord_laplacian_smoothing(stepsmoothnum=2)
     mesh_set.compute_selection_by_condition_per_vertex(condselect="(z < 0)")
     script, out = tmp_path / "smooth.mlx", tmp_path / "out"
     mesh_set.save_filter_script(str(script))
-    done = command(
-        "batch", cow, "--output", out, "--script", script, "--format", "ply", "--workers", 1
-    )
-    assert done.returncode == 0, done.stderr
+    succeeded("batch", cow, "--output", out, "--script", script, "--format", "ply", "--workers", 1)
     expected = mesh_set.current_mesh().vertex_matrix()
     V, _ = arrays_of(out / "cow.ply")
     # The script keeps the feature size as a length, and that in single precision.
@@ -245,8 +241,7 @@ def test_the_logs_of_workers_stay_out_of_the_lines_of_verbose(tmp_path: Path) ->
     (mesh,) = make_meshes(tmp_path / "in", 1)
     script = tmp_path / "x.mlx"
     script.write_text('<FilterScript><filter name="Laplacian Smooth"/></FilterScript>')
-    done = command("batch", mesh, "--output", tmp_path / "out", "--script", script, "-v")
-    assert done.returncode == 0
+    done = succeeded("batch", mesh, "--output", tmp_path / "out", "--script", script, "-v")
     assert done.stderr == f"[1/1] {mesh.name}: filtered\n"
 
 

@@ -6,13 +6,12 @@ import json
 import re
 import shutil
 import subprocess
-import sys
 import time
 from pathlib import Path
 
 import pytest
 from batches import make_meshes
-from commands import assert_fails, command, messages_in, write_ply
+from commands import assert_fails, command, messages_in, python, succeeded, write_ply
 from meshlab_spectral import DenoiseOptions, FilterOptions
 from meshlab_spectral.cli import many_files, progress
 from meshlab_spectral.cli.app import app
@@ -25,8 +24,7 @@ SECTION = re.compile(r"^(\S.*):$", re.MULTILINE)
 
 @pytest.mark.parametrize("name", COMMANDS)
 def test_help_has_a_short_option_and_lists_the_common_options(name: str) -> None:
-    done = command(name, "--help", COLUMNS="80")
-    assert done.returncode == 0
+    done = succeeded(name, "--help", COLUMNS="80")
     assert done.stdout == command(name, "-h", COLUMNS="80", LINES="1000").stdout
     for option in ("-q, --quiet", "-v, --verbose", "-h, --help"):
         assert option in done.stdout
@@ -115,8 +113,8 @@ def test_verbose_adds_every_number_and_meshlabs_log(cow: Path, tmp_path: Path) -
 
 def test_an_output_is_named_by_position_or_by_option(cow: Path, tmp_path: Path) -> None:
     one, other = tmp_path / "one.obj", tmp_path / "other.obj"
-    assert command("filter", cow, one, "--steps", 1).returncode == 0
-    assert command("filter", cow, "-o", other, "--steps", 1).returncode == 0
+    succeeded("filter", cow, one, "--steps", 1)
+    succeeded("filter", cow, "-o", other, "--steps", 1)
     assert one.read_bytes() == other.read_bytes()
     assert_fails(command("filter", cow, one, "-o", other), 2, f"--output: OUTPUT is {one} already")
 
@@ -232,5 +230,5 @@ def test_a_command_starts_without_slow_imports(name: str) -> None:
         f"import sys; sys.argv = ['meshlab-spectral', '{name}']; import meshlab_spectral.cli.app; "
         "print({'numpy', 'plyfile', 'pyvista', 'matplotlib'} & sys.modules.keys())"
     )
-    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True)
+    done = python("-c", program)
     assert done.stdout == "set()\n", done.stderr

@@ -8,10 +8,9 @@ from pathlib import Path
 import matplotlib.image
 import numpy as np
 import plyfile
-import pymeshlab
 import pytest
-from commands import command
-from helpers import mesh_set_of
+from commands import command, succeeded
+from helpers import loaded, mesh_set_of
 from meshlab_spectral import compare
 from shapes import sphere
 
@@ -28,14 +27,11 @@ def pair(tmp_path: Path) -> tuple[Path, Path]:
 
 
 def test_the_numbers_are_those_of_the_function(pair: tuple[Path, Path]) -> None:
-    done = command("compare", *pair, "--json")
-    assert done.returncode == 0, done.stderr
-    record = json.loads(done.stdout)
+    record = json.loads(succeeded("compare", *pair, "--json").stdout)
     assert record.pop("a") == str(pair[0])
     assert record.pop("b") == str(pair[1])
     assert record == compare(*pair).report
-    shown = command("compare", *pair)
-    assert shown.returncode == 0, shown.stderr
+    shown = succeeded("compare", *pair)
     assert "Along the normal" in shown.stdout
     assert "Volume" in shown.stdout
     equal = command("compare", pair[0], pair[0]).stdout
@@ -45,9 +41,12 @@ def test_the_numbers_are_those_of_the_function(pair: tuple[Path, Path]) -> None:
 
 def test_the_coloured_mesh_is_b_with_the_deviation(pair: tuple[Path, Path], tmp_path: Path) -> None:
     output = tmp_path / "change.ply"
-    done = command("compare", *pair, "--output", output, "--json")
-    assert done.returncode == 0, done.stderr
-    assert json.loads(done.stdout)["colour_extent"] == compare(*pair).color_extent
+    assert (
+        json.loads(succeeded("compare", *pair, "--output", output, "--json").stdout)[
+            "colour_extent"
+        ]
+        == compare(*pair).color_extent
+    )
     read, b = plyfile.PlyData.read(output)["vertex"], plyfile.PlyData.read(pair[1])["vertex"]
     for axis in "xyz":
         np.testing.assert_array_equal(read[axis], b[axis])
@@ -60,8 +59,7 @@ def test_the_coloured_mesh_is_b_with_the_deviation(pair: tuple[Path, Path], tmp_
     assert (read["blue"][outside] < 255).all()
     assert (read["blue"][inside] == 255).all()
     assert (read["red"][inside] < 255).all()
-    opened = pymeshlab.MeshSet()
-    opened.load_new_mesh(str(output))
+    opened = loaded(output)
     assert opened.current_mesh().has_vertex_scalar()
     assert opened.current_mesh().has_vertex_color()
 
@@ -70,8 +68,7 @@ def test_the_picture_shows_both_meshes_and_the_deviation_in_colours(
     pair: tuple[Path, Path], tmp_path: Path
 ) -> None:
     path = tmp_path / "change.png"
-    done = command("compare", *pair, "--picture", path)
-    assert done.returncode == 0, done.stderr
+    succeeded("compare", *pair, "--picture", path)
     pixels = matplotlib.image.imread(path)
     assert pixels.shape[1] > 900
     saturation = np.ptp(pixels[: -pixels.shape[0] // 3, :, :3], axis=2) > 0.3

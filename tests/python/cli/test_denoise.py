@@ -9,7 +9,8 @@ import numpy as np
 import pymeshlab
 import pytest
 from batches import REPORT, contents, make_meshes, records
-from commands import arrays_of, command, messages_in
+from commands import arrays_of, command, messages_in, succeeded
+from helpers import loaded
 from meshlab_spectral import DenoiseOptions
 from meshlab_spectral.files.recipe import load_recipe
 from numpy.testing import assert_array_equal
@@ -25,8 +26,7 @@ def scan(tmp_path: Path) -> Path:
 
 def denoised(path: Path, noise_height: float = 0.0) -> np.ndarray:
     """Positions that pymeshlab computes; at a height of 0 it measures the height itself."""
-    mesh_set = pymeshlab.MeshSet()
-    mesh_set.load_new_mesh(str(path))
+    mesh_set = loaded(path)
     mesh_set.apply_filter(FILTER, noise_height=pymeshlab.PureValue(noise_height))
     return mesh_set.current_mesh().vertex_matrix().copy()
 
@@ -39,8 +39,7 @@ def recipe_in(folder: Path, text: str) -> Path:
 
 def test_the_output_is_what_pymeshlab_computes(scan: Path, tmp_path: Path) -> None:
     target = tmp_path / "clean.ply"
-    done = command("denoise", scan, target)
-    assert done.returncode == 0, done.stderr
+    done = succeeded("denoise", scan, target)
     assert messages_in(done.stderr) == ""
     (V, F), (noisy, faces) = arrays_of(target), arrays_of(scan)
     assert_array_equal(V, denoised(scan))
@@ -50,8 +49,7 @@ def test_the_output_is_what_pymeshlab_computes(scan: Path, tmp_path: Path) -> No
 
 def test_json_is_one_object_with_report_options_and_versions(scan: Path, tmp_path: Path) -> None:
     target = tmp_path / "clean.ply"
-    done = command("denoise", scan, target, "--json")
-    assert done.returncode == 0, done.stderr
+    done = succeeded("denoise", scan, target, "--json")
     assert done.stdout.count("\n") == 1
     record = json.loads(done.stdout)
     assert (record["input"], record["output"]) == (str(scan), str(target))
@@ -80,8 +78,7 @@ def test_a_recipe_denoises_a_folder(tmp_path: Path) -> None:
     scans = make_meshes(source, 2, rings=48)
     recipe = recipe_in(tmp_path, "[denoise]\n")
     batch = ["batch", source, "--output", out, "--recipe", recipe, "--workers", 1]
-    done = command(*batch)
-    assert done.returncode == 0, done.stderr
+    done = succeeded(*batch)
     assert "2 filtered, 0 failed" in done.stdout
     for scan in scans:
         assert_array_equal(arrays_of(out / scan.name)[0], denoised(scan))
@@ -102,8 +99,7 @@ def test_a_dry_run_lists_the_outputs_and_saves_the_whole_recipe(scan: Path, tmp_
     recipe, saved = recipe_in(tmp_path, '[denoise]\nnoise_height = "0.2e"\n'), tmp_path / "a.toml"
     out = tmp_path / "clean"
     arguments = ["--recipe", recipe, "--dry-run", "--save-recipe", saved]
-    done = command("batch", scan, "--output", out, *arguments)
-    assert done.returncode == 0, done.stderr
+    done = succeeded("batch", scan, "--output", out, *arguments)
     assert done.stdout == f"{scan} -> {out / scan.name}\n"
     assert not out.exists()
     text = saved.read_text(encoding="utf-8")
@@ -114,8 +110,7 @@ def test_a_dry_run_lists_the_outputs_and_saves_the_whole_recipe(scan: Path, tmp_
 
 def test_a_batch_denoises_without_a_recipe(scan: Path, tmp_path: Path) -> None:
     out, saved = tmp_path / "clean", tmp_path / "a.toml"
-    done = command("batch", scan, "--output", out, "--denoise", "--save-recipe", saved)
-    assert done.returncode == 0, done.stderr
+    succeeded("batch", scan, "--output", out, "--denoise", "--save-recipe", saved)
     assert_array_equal(arrays_of(out / scan.name)[0], denoised(scan))
     assert load_recipe(saved) == (DenoiseOptions, DenoiseOptions().as_dict())
 
@@ -125,8 +120,7 @@ def test_a_batch_denoises_with_every_option_of_denoise(scan: Path, tmp_path: Pat
     spelled = [f"--{name.replace('_', '-')}={value}" for name, value in given.items()]
     out, one, saved = tmp_path / "clean", tmp_path / "one.ply", tmp_path / "a.toml"
     options = [*spelled, "--no-keep-creases", "--save-recipe", saved]
-    done = command("batch", scan, "--output", out, "--denoise", *options)
-    assert done.returncode == 0, done.stderr
+    done = succeeded("batch", scan, "--output", out, "--denoise", *options)
     expected = {**DenoiseOptions().as_dict(), **given, "keep_creases": False}
     assert load_recipe(saved) == (DenoiseOptions, expected)
     # Options of the command line come before those of the recipe, in both commands.
@@ -134,6 +128,6 @@ def test_a_batch_denoises_with_every_option_of_denoise(scan: Path, tmp_path: Pat
     assert json.loads(done.stdout)["options"] == expected
     assert one.read_bytes() == (out / scan.name).read_bytes()
     again = ["--output", tmp_path / "again", "--recipe", saved, "--strength", 2]
-    assert command("batch", scan, *again, "--denoise").returncode == 0
+    succeeded("batch", scan, *again, "--denoise")
     (record,) = records(tmp_path / "again" / REPORT)
     assert record["options"] == {**expected, "strength": 2.0}

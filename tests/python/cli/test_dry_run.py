@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 from batches import make_meshes
-from commands import PRECIOUS, command
+from commands import PRECIOUS, command, succeeded
 
 SIZES = {
     "filter": ["feature_size", "tolerance", "max_displacement"],
@@ -19,9 +19,7 @@ SIZES = {
 @pytest.mark.parametrize("verb", ["filter", "denoise"])
 def test_nothing_is_written_and_sizes_have_the_units_of_the_file(verb: str, tmp_path: Path) -> None:
     (scan,) = make_meshes(tmp_path, 1)
-    done = command(verb, scan, tmp_path / "out.ply", "--dry-run", "--json")
-    assert done.returncode == 0, done.stderr
-    record = json.loads(done.stdout)
+    record = json.loads(succeeded(verb, scan, tmp_path / "out.ply", "--dry-run", "--json").stdout)
     (surface,) = record["intent"]["surfaces"]
     assert list(surface["sizes"]) == SIZES[verb]
     assert (surface["vertices"], surface["faces"]) == (144, 288)
@@ -60,8 +58,7 @@ def test_in_words_it_says_where_the_output_goes_and_how(tmp_path: Path) -> None:
     (scan,) = make_meshes(tmp_path, 1)
     out = tmp_path / "out.obj"
     out.write_bytes(PRECIOUS)
-    done = command("filter", scan, out, "--dry-run", "--overwrite", "--where", "x > 0", "-q")
-    assert done.returncode == 0, done.stderr
+    done = succeeded("filter", scan, out, "--dry-run", "--overwrite", "--where", "x > 0", "-q")
     assert f"{out} would be replaced anew by MeshLab, as a whole" in done.stdout
     assert "of 144, and some around them" in done.stdout
     assert out.read_bytes() == PRECIOUS

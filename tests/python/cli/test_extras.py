@@ -7,7 +7,7 @@ from importlib.metadata import metadata
 from pathlib import Path
 
 import pytest
-from commands import assert_fails, command
+from commands import assert_fails, command, succeeded
 from meshlab_spectral.extras import _PACKAGES
 
 # What the extras bring, as if it were not installed.
@@ -41,8 +41,7 @@ def _plain(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
 )
 def test_a_command_on_this_machine_needs_no_extra(arguments: list[str], cow: Path) -> None:
     files = [str(cow) if argument == "COW" else argument for argument in arguments]
-    done = command(*files)
-    assert done.returncode == 0, done.stderr
+    succeeded(*files)
 
 
 @pytest.mark.parametrize(

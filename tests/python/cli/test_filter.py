@@ -8,12 +8,12 @@ import shutil
 from pathlib import Path
 
 import numpy as np
-import pymeshlab
 import pytest
 import trimesh
-from commands import arrays_of, assert_fails, command, messages_in, write_ply
-from helpers import FILTER, lower_part, mesh_set_of, percent
+from commands import arrays_of, assert_fails, command, messages_in, succeeded, write_ply
+from helpers import FILTER, loaded, lower_part, mesh_set_of, percent
 from meshlab_spectral import FilterOptions, OptionError, filter_mesh
+from meshlab_spectral.files.region import Region
 from meshlab_spectral.files.region_vertices import chosen_parts
 from meshlab_spectral.formats.document import Part
 from shared_types import Decimated
@@ -21,11 +21,9 @@ from shared_types import Decimated
 
 def test_output_is_what_the_filter_computes(cow: Path, tmp_path: Path) -> None:
     target = tmp_path / "cow.ply"
-    done = command("filter", cow, target, "--feature-size", "4%", "--steps", 3)
-    assert done.returncode == 0, done.stderr
+    done = succeeded("filter", cow, target, "--feature-size", "4%", "--steps", 3)
     assert messages_in(done.stderr) == "Warning: cow.ply loses comments.\n"
-    mesh_set = pymeshlab.MeshSet()
-    mesh_set.load_new_mesh(str(cow))
+    mesh_set = loaded(cow)
     mesh_set.apply_filter(FILTER, feature_size=percent(4), steps=3)
     V, F = arrays_of(target)
     np.testing.assert_array_equal(V, mesh_set.current_mesh().vertex_matrix())
@@ -35,8 +33,7 @@ def test_output_is_what_the_filter_computes(cow: Path, tmp_path: Path) -> None:
 
 def test_json_is_one_object_with_report_options_and_versions(cow: Path, tmp_path: Path) -> None:
     target = tmp_path / "cow.ply"
-    done = command("filter", cow, target, "--json", "--feature-size", 0.15, "--steps", 2)
-    assert done.returncode == 0, done.stderr
+    done = succeeded("filter", cow, target, "--json", "--feature-size", 0.15, "--steps", 2)
     assert done.stdout.count("\n") == 1
     record = json.loads(done.stdout)
     assert record["input"] == str(cow)
@@ -55,8 +52,9 @@ def test_harmonics_that_end_above_the_feature_size_are_a_warning(
     cow: Path, tmp_path: Path, feature_size: str, warned: bool
 ) -> None:
     arguments = ["--spectrum", "truncated", "--basis-size", 30, "--steps", 1]
-    done = command("filter", cow, tmp_path / "cow.ply", *arguments, "--feature-size", feature_size)
-    assert done.returncode == 0, done.stderr
+    done = succeeded(
+        "filter", cow, tmp_path / "cow.ply", *arguments, "--feature-size", feature_size
+    )
     assert ("harmonics end at features of" in done.stderr) == warned
 
 
@@ -73,8 +71,7 @@ def test_report_is_a_table_with_the_input_and_the_output_as_they_were_named(
 ) -> None:
     source = tmp_path / "[red] kühe.obj"
     shutil.copy(cow, source)
-    done = command("filter", source, tmp_path / "[bold]öut.ply", "--steps", 1)
-    assert done.returncode == 0, done.stderr
+    done = succeeded("filter", source, tmp_path / "[bold]öut.ply", "--steps", 1)
     assert "[red] kühe.obj -> [bold]öut.ply" in done.stdout
     for row in ("Feature size", "Largest displacement", "Area", "Volume", "Work"):
         assert row in done.stdout
@@ -110,8 +107,7 @@ def test_a_vertex_that_is_not_a_number_is_named(existing: Path, tmp_path: Path) 
 def test_only_the_selection_stored_in_a_ply_file_is_filtered(
     element: str, samples: Path, tmp_path: Path
 ) -> None:
-    mesh_set = pymeshlab.MeshSet()
-    mesh_set.load_new_mesh(str(samples / "bunny.obj"))
+    mesh_set = loaded(samples / "bunny.obj")
     if element == "vertex":
         mesh_set.compute_selection_by_condition_per_vertex(condselect="x > 0.2")
     else:
@@ -119,8 +115,7 @@ def test_only_the_selection_stored_in_a_ply_file_is_filtered(
     flags = {"save_vertex_flag": element == "vertex", "save_face_flag": element == "face"}
     source, target = tmp_path / "selected.ply", tmp_path / "out.ply"
     mesh_set.save_current_mesh(str(source), **flags)
-    done = command("filter", source, target, "--selected", "--feature-size", "5%", "--quiet")
-    assert done.returncode == 0, done.stderr
+    succeeded("filter", source, target, "--selected", "--feature-size", "5%", "--quiet")
     before, after = arrays_of(source)[0], arrays_of(target)[0]
     moved = (before != after).any(axis=1)
     assert 100 < moved.sum() < 0.8 * len(before)
@@ -144,7 +139,7 @@ def test_of_several_meshes_those_with_a_selection_are_filtered() -> None:
     V, F = np.eye(3), np.array([[0, 1, 2]])
     bare, part = Part("", V, F), Part("", V, F, selected=np.array([True, False, False]))
     options = FilterOptions(selected=True)
-    assert chosen_parts([bare, part], options, None) == [None, part]
-    assert chosen_parts([bare, part], FilterOptions(), None) == [bare, part]
+    assert chosen_parts([bare, part], options, Region()) == [None, part]
+    assert chosen_parts([bare, part], FilterOptions(), Region()) == [bare, part]
     with pytest.raises(OptionError, match="nothing is selected"):
-        chosen_parts([bare, bare], options, None)
+        chosen_parts([bare, bare], options, Region())

@@ -10,7 +10,7 @@ import numpy as np
 import pymeshlab
 import pytest
 from batches import make_meshes
-from commands import command, write_ply
+from commands import command, succeeded, write_ply
 from helpers import diagonal, mesh_set_of
 from meshlab_spectral import denoise_mesh, geometry_spectrum
 from meshlab_spectral.files.meshes import load_arrays
@@ -21,9 +21,7 @@ CUT_FACES = "3 0 1 2\n3 0 2 3\n3 4 5 6\n3 4 6 7\n3 8 9 10"
 
 
 def info(path: Path, *arguments: str) -> dict:
-    done = command("info", path, "--json", *arguments)
-    assert done.returncode == 0, done.stderr
-    return json.loads(done.stdout)
+    return json.loads(succeeded("info", path, "--json", *arguments).stdout)
 
 
 def test_the_surface_is_counted_with_its_seams_closed(tmp_path: Path) -> None:
@@ -55,8 +53,7 @@ def test_lengths_and_noise_are_those_of_the_filters(tmp_path: Path) -> None:
 
 def test_without_json_a_labelled_table_is_printed(tmp_path: Path) -> None:
     (scan,) = make_meshes(tmp_path, 1, rings=48)
-    done = command("info", scan)
-    assert done.returncode == 0, done.stderr
+    done = succeeded("info", scan)
     for label in ("Vertices", "Rims", "Mean edge", "Noise height", "Suggested feature size"):
         assert label in done.stdout
     assert "Selected" not in done.stdout

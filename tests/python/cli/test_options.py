@@ -12,8 +12,8 @@ import numpy as np
 import plyfile
 import pymeshlab
 import pytest
-from commands import arrays_of, assert_fails, command
-from helpers import FILTER, as_percentages, other_options, percent
+from commands import arrays_of, assert_fails, command, succeeded
+from helpers import FILTER, as_percentages, loaded, other_options, percent
 from meshlab_spectral import FilterOptions, denoise_preset, filter_preset
 from meshlab_spectral.files.presets import PRESETS
 
@@ -32,16 +32,14 @@ def test_every_option_reaches_the_filter(cow: Path, tmp_path: Path) -> None:
     target = tmp_path / "cow.ply"
     done = command("filter", cow, target, "--json", *arguments)
     assert json.loads(done.stdout)["options"] == options
-    mesh_set = pymeshlab.MeshSet()
-    mesh_set.load_new_mesh(str(cow))
+    mesh_set = loaded(cow)
     mesh_set.apply_filter(FILTER, **as_percentages(options))
     V, _ = arrays_of(target)
     np.testing.assert_array_equal(V, mesh_set.current_mesh().vertex_matrix())
 
 
 def test_help_names_every_option_and_the_exit_codes() -> None:
-    done = command("filter", "--help")
-    assert done.returncode == 0
+    done = succeeded("filter", "--help")
     for name in FilterOptions().as_dict():
         assert f"--{name.replace('_', '-')}" in done.stdout
     assert "130 interrupted" in " ".join(done.stdout.split())
@@ -49,8 +47,7 @@ def test_help_names_every_option_and_the_exit_codes() -> None:
 
 
 def test_version_names_the_package_and_pymeshlab() -> None:
-    done = command("--version")
-    assert done.returncode == 0
+    done = succeeded("--version")
     assert re.fullmatch(r"meshlab-spectral \d+\.\d+\.\d+, pymeshlab 2025\.7\.post1\n", done.stdout)
 
 
@@ -86,8 +83,7 @@ def test_presets_of_the_user_are_saved_and_used(
     for variable in ("XDG_CONFIG_HOME", "HOME"):
         monkeypatch.setenv(variable, str(tmp_path))
     one, other = tmp_path / "one.ply", tmp_path / "other.ply"
-    done = command("denoise", cow, one, "--strength", "0.5", "--save-preset", "half")
-    assert done.returncode == 0, done.stderr
+    done = succeeded("denoise", cow, one, "--strength", "0.5", "--save-preset", "half")
     command("denoise", cow, other, "--preset", "half")
     assert one.read_bytes() == other.read_bytes()
     assert denoise_preset("half", keep_creases=False).strength == 0.5
@@ -95,8 +91,7 @@ def test_presets_of_the_user_are_saved_and_used(
     assert_fails(done, 2, "the preset half is for denoise")
     done = command("batch", cow, "-o", tmp_path / "out", "--preset", "half")
     assert_fails(done, 2, "the preset half is for denoise: add --denoise")
-    done = command("batch", cow, "-o", tmp_path / "out", "--preset", "half", "--denoise")
-    assert done.returncode == 0, done.stderr
+    done = succeeded("batch", cow, "-o", tmp_path / "out", "--preset", "half", "--denoise")
     done = command("filter", cow, tmp_path / "x.ply", "--save-preset", "sharpen")
     assert_fails(done, 2, "preset sharpen: is there already")
 
@@ -145,8 +140,7 @@ def test_in_a_batch_a_preset_overrides_a_recipe(cow: Path, tmp_path: Path) -> No
 def test_a_recipe_is_tried_on_one_mesh_and_serves_a_batch(cow: Path, tmp_path: Path) -> None:
     recipe, one = tmp_path / "recipe.toml", tmp_path / "cow.obj"
     options = ["--preset", "sharpen", "--steps", 1, "--crease-angle", 120]
-    done = command("filter", cow, one, *options, "--save-recipe", recipe)
-    assert done.returncode == 0, done.stderr
+    done = succeeded("filter", cow, one, *options, "--save-recipe", recipe)
     out = tmp_path / "out"
     command("batch", cow, "--output", out, "--recipe", recipe, "--workers", 1)
     assert (out / "cow.obj").read_bytes() == one.read_bytes()
@@ -190,8 +184,7 @@ def test_the_equalizer_agrees_with_that_of_meshlab(samples: Path, tmp_path: Path
     assert json.loads(done.stdout)["options"]["transfer_function"] == (
         "192e:1, 96e:1, 48e:1, 24e:2, 12e:1, 6e:0.5, 3e:0"
     )
-    mesh_set = pymeshlab.MeshSet()
-    mesh_set.load_new_mesh(str(bunny))
+    mesh_set = loaded(bunny)
     before = mesh_set.current_mesh().vertex_matrix()
     mesh_set.apply_coord_spectral_equalizer(gain_8x=2, gain_2x=0.5, gain_1x=0, accurate=True)
     expected = mesh_set.current_mesh().vertex_matrix()

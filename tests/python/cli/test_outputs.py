@@ -8,10 +8,9 @@ import time
 from pathlib import Path
 
 import numpy as np
-import pymeshlab
 import pytest
-from commands import COMMAND, PRECIOUS, arrays_of, assert_fails, command
-from helpers import diagonal, largest_distance
+from commands import COMMAND, PRECIOUS, arrays_of, assert_fails, command, succeeded
+from helpers import diagonal, largest_distance, loaded
 
 MATERIAL = "bunny10k_textured.mtl"
 
@@ -19,11 +18,11 @@ MATERIAL = "bunny10k_textured.mtl"
 @pytest.mark.parametrize("ending", [".ply", ".obj", ".stl", ".off"])
 def test_every_usual_format_is_written(ending: str, cow: Path, tmp_path: Path) -> None:
     target = tmp_path / f"cow{ending}"
-    assert command("filter", cow, target, "--steps", 1).returncode == 0
+    succeeded("filter", cow, target, "--steps", 1)
     V, F = arrays_of(target)
     assert len(F) == len(arrays_of(cow)[1])
     reference = tmp_path / "reference.ply"
-    assert command("filter", cow, reference, "--steps", 1).returncode == 0
+    succeeded("filter", cow, reference, "--steps", 1)
     if ending != ".stl":  # which has its vertices in another order
         expected, _ = arrays_of(reference)
         assert largest_distance(V, expected) < 1e-6 * diagonal(expected)
@@ -37,26 +36,24 @@ def test_polygons_that_meet_in_a_non_manifold_edge_are_written(ending: str, tmp_
     quads = "1 2 3 4", "1 2 6 5", "1 2 8 7", "1 2 3 4"
     lines = [f"v {corner}" for corner in corners] + [f"f {quad}" for quad in quads]
     source.write_text("\n".join(lines) + "\n")
-    done = command("filter", source, target, "--steps", 1)
-    assert done.returncode == 0, done.stderr
+    succeeded("filter", source, target, "--steps", 1)
     assert len(arrays_of(target)[1]) == 8
 
 
 def test_the_polygons_of_an_obj_stay_polygons(tmp_path: Path) -> None:
     source, target = tmp_path / "in.obj", tmp_path / "out.obj"
     source.write_text("v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n")
-    assert command("filter", source, target, "--steps", 1).returncode == 0
+    succeeded("filter", source, target, "--steps", 1)
     faces = [line for line in target.read_text().splitlines() if line.startswith("f ")]
     assert [len(face.split()) for face in faces] == [5]
 
 
 def test_colour_and_quality_are_in_the_output(samples: Path, tmp_path: Path) -> None:
     source, target = samples / "colored_airplane.ply", tmp_path / "airplane.ply"
-    assert command("filter", source, target, "--steps", 1).returncode == 0
+    succeeded("filter", source, target, "--steps", 1)
     meshes = []
     for path in (source, target):
-        mesh_set = pymeshlab.MeshSet()
-        mesh_set.load_new_mesh(str(path))
+        mesh_set = loaded(path)
         meshes.append(mesh_set)
     before, after = (mesh_set.current_mesh() for mesh_set in meshes)
     np.testing.assert_array_equal(before.vertex_color_matrix(), after.vertex_color_matrix())
@@ -69,14 +66,12 @@ def test_material_and_texture_of_an_obj_appear_beside_it_under_their_names(
     target = tmp_path / "bunny.obj"
     arguments = ("filter", samples / "bunny10k_textured.obj", target, "--overwrite", "--steps", 1)
     for _ in range(2):  # the second run replaces its own files
-        done = command(*arguments)
-        assert done.returncode == 0, done.stderr
+        succeeded(*arguments)
         names = sorted(path.name for path in tmp_path.iterdir())
         assert names == ["TextureDouble_A.png", "bunny.obj", MATERIAL]
     assert f"mtllib ./{MATERIAL}" in target.read_text()
     assert (tmp_path / MATERIAL).read_bytes() == (samples / MATERIAL).read_bytes()
-    mesh_set = pymeshlab.MeshSet()
-    mesh_set.load_new_mesh(str(target))
+    mesh_set = loaded(target)
     assert mesh_set.current_mesh().has_wedge_tex_coord()
     assert list(mesh_set.current_mesh().textures()) == ["TextureDouble_A.png"]
 
@@ -85,7 +80,7 @@ def test_a_texture_in_a_folder_keeps_its_place(samples: Path, tmp_path: Path) ->
     source = textured_bunny(samples, tmp_path / "in", "maps/skin.png")
     target = tmp_path / "out" / "bunny.obj"
     target.parent.mkdir()
-    assert command("filter", source, target, "--steps", 1).returncode == 0
+    succeeded("filter", source, target, "--steps", 1)
     assert (target.parent / "maps" / "skin.png").is_file()
     assert "map_Kd maps/skin.png" in (target.parent / MATERIAL).read_text()
 
@@ -96,7 +91,7 @@ def test_the_texture_of_the_input_is_left_alone_when_the_output_lies_beside_it(
     source = textured_bunny(samples, tmp_path / "in", "skin.png")
     skin = source.parent / "skin.png"
     before = skin.read_bytes()
-    assert command("filter", source, source.parent / "new.obj", "--steps", 1).returncode == 0
+    succeeded("filter", source, source.parent / "new.obj", "--steps", 1)
     assert skin.read_bytes() == before
     assert sorted(path.name for path in source.parent.iterdir()) == [
         MATERIAL,
@@ -110,8 +105,7 @@ def test_a_texture_outside_of_the_folder_is_never_written(samples: Path, tmp_pat
     source = textured_bunny(samples, tmp_path / "in", "../skin.png")
     target = tmp_path / "out" / "bunny.obj"
     target.parent.mkdir()
-    done = command("filter", source, target, "--steps", 1)
-    assert done.returncode == 0
+    done = succeeded("filter", source, target, "--steps", 1)
     assert "../skin.png" in done.stderr
     names = sorted(path.name for path in target.parent.iterdir())
     assert names == ["bunny.obj", MATERIAL]
@@ -146,7 +140,7 @@ def test_an_existing_output_is_replaced_and_keeps_its_permissions(
     target = tmp_path / "cow.ply"
     target.write_bytes(PRECIOUS)
     target.chmod(0o640)
-    assert command("filter", cow, target, "--overwrite", "--steps", 1).returncode == 0
+    succeeded("filter", cow, target, "--overwrite", "--steps", 1)
     assert len(arrays_of(target)[0]) == len(arrays_of(cow)[0])
     assert target.stat().st_mode & 0o777 == 0o640
 
@@ -157,7 +151,7 @@ def test_a_symbolic_link_as_output_stays_a_link(cow: Path, tmp_path: Path) -> No
     for content in (None, PRECIOUS):
         if content is not None:
             real.write_bytes(content)
-        assert command("filter", cow, link, "--overwrite", "--steps", 1).returncode == 0
+        succeeded("filter", cow, link, "--overwrite", "--steps", 1)
         assert link.is_symlink()
         assert len(arrays_of(real)[0]) == len(arrays_of(cow)[0])
 

@@ -5,11 +5,11 @@ from __future__ import annotations
 import shlex
 from pathlib import Path
 
-import pymeshlab
 import pytest
 import trimesh
 from batches import contents
 from commands import PRECIOUS, assert_fails, command, write_ply
+from helpers import loaded
 
 MESH_ENDINGS = ("ply", "obj", "stl", "off")
 SCRIPTS = {"text.mlx": "no script", "html.mlx": "<html/>", "empty.mlx": "<FilterScript/>"}
@@ -41,8 +41,7 @@ def folder(tmp_path_factory: pytest.TempPathFactory, samples: Path) -> Path:
     (folder / "flat.off").write_text("OFF\n3 1 0\n0 0 0\n0 0 0\n0 0 0\n3 0 1 2\n")
     (folder / "notes.txt2").write_text("notes\n")
     trimesh.creation.icosphere(3).export(folder / "sphere.ply")
-    mesh_set = pymeshlab.MeshSet()
-    mesh_set.load_new_mesh(str(samples / "cow.obj"))
+    mesh_set = loaded(samples / "cow.obj")
     mesh_set.save_current_mesh(str(folder / "cow.ply"))
     (folder / "cut.ply").write_bytes((folder / "cow.ply").read_bytes()[:20_000])
     return folder

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 import pytest
 import trimesh
-from commands import arrays_of, assert_fails, command
+from commands import arrays_of, assert_fails, command, succeeded
 from helpers import mesh_set_of
 from meshlab_spectral import InputError, OptionError, denoise_mesh, filter_mesh
 from meshlab_spectral.files.region import Region
@@ -61,8 +61,7 @@ def test_a_region_is_filtered_as_the_same_selection_in_python(
 ) -> None:
     arguments, select = REGIONS[region]
     source, target = written(tmp_path, spheres(1.0)), tmp_path / "out.ply"
-    done = command(verb, source, target, *arguments, "--json")
-    assert done.returncode == 0, done.stderr
+    done = succeeded(verb, source, target, *arguments, "--json")
     V, F = arrays_of(source)
     function: Any = filter_mesh if verb == "filter" else denoise_mesh
     expected, report = function(V, F, selection=select(V))
@@ -82,8 +81,7 @@ def test_the_normal_and_the_quality_are_variables_of_a_condition(tmp_path: Path)
     source = tmp_path / "in.ply"
     mesh_set.save_current_mesh(str(source))
     for condition in ("q > 5", "nx > 0.5"):
-        done = command("filter", source, tmp_path / "out.ply", "--where", condition, "--overwrite")
-        assert done.returncode == 0, done.stderr
+        succeeded("filter", source, tmp_path / "out.ply", "--where", condition, "--overwrite")
         V, moved = arrays_of(source)[0], arrays_of(tmp_path / "out.ply")[0]
         where = (moved != V).any(axis=1)
         assert 50 < where.sum() < 0.7 * len(V)
@@ -106,7 +104,7 @@ def test_how_much_is_in_the_region_is_no_warning(ending: str, tmp_path: Path) ->
 @pytest.mark.parametrize(("given", "number"), [("largest", 1), ("1", 1), ("2", 0), ("3", 2)])
 def test_components_are_counted_by_area(given: str, number: int, tmp_path: Path) -> None:
     source, target = written(tmp_path, spheres(1.0, 1.5, 0.5)), tmp_path / "out.ply"
-    assert command("denoise", source, target, "--component", given).returncode == 0
+    succeeded("denoise", source, target, "--component", given)
     V, moved = arrays_of(source)[0], arrays_of(target)[0]
     n = len(V) // 3
     has_moved = (moved != V).any(axis=1).reshape(3, n).sum(axis=1)
@@ -122,8 +120,7 @@ def test_a_mask_file_has_a_number_for_each_vertex(ending: str, output: str, tmp_
     mask, path = V[:, 1] > 0.3, tmp_path / f"mask.{ending}"
     np.save(path, mask) if ending == "npy" else np.savetxt(path, mask)
     target = tmp_path / f"out.{output}"
-    done = command("denoise", source, target, "--mask", path)
-    assert done.returncode == 0, done.stderr
+    succeeded("denoise", source, target, "--mask", path)
     expected, _ = denoise_mesh(V, F, selection=mask)
     np.testing.assert_allclose(arrays_of(target)[0], expected, atol=1e-5)
 
@@ -174,9 +171,12 @@ def test_components_are_counted_over_all_meshes_of_a_file(
         scene.add_geometry(trimesh.Trimesh(V[part], corners, process=False), geom_name=one)
     scene.export(source)
     assert_fails(command("denoise", source, target, "--component", 4), 2, "there are 3")
-    done = command("denoise", source, target, "--component", given, "--json")
-    assert done.returncode == 0, done.stderr
-    assert json.loads(done.stdout)["report"]["mesh"] == name
+    assert (
+        json.loads(succeeded("denoise", source, target, "--component", given, "--json").stdout)[
+            "report"
+        ]["mesh"]
+        == name
+    )
 
 
 def test_a_recipe_that_lacks_the_region_says_so(tmp_path: Path) -> None:

@@ -11,7 +11,7 @@ import meshlab_spectral
 import numpy as np
 import pytest
 from batches import make_meshes, records
-from commands import PRECIOUS, arrays_of, assert_fails, command
+from commands import PRECIOUS, arrays_of, assert_fails, command, succeeded
 
 
 def test_the_table_has_the_octaves_of_every_mesh(cow: Path, samples: Path, tmp_path: Path) -> None:
@@ -80,7 +80,7 @@ def test_resume_measures_only_what_the_report_does_not_hold(tmp_path: Path) -> N
     folder, table = tmp_path / "in", tmp_path / "spectra.csv"
     make_meshes(folder, 2)
     spectra = ["spectra", folder, "--output", table, "--basis-size", 20, "--workers", 1]
-    assert command(*spectra).returncode == 0
+    succeeded(*spectra)
     before = table.read_text()
     assert_fails(command(*spectra), 2, "exists: choose another name, or replace it with")
     assert len(records(tmp_path / "spectra_report.jsonl")) == 2
@@ -98,7 +98,7 @@ def test_resume_measures_only_what_the_report_does_not_hold(tmp_path: Path) -> N
 def test_a_recorded_spectrum_that_cannot_be_written_is_measured_again(tmp_path: Path) -> None:
     table, report = tmp_path / "spectra.csv", tmp_path / "spectra_report.jsonl"
     spectra = ["spectra", *make_meshes(tmp_path, 2), "--output", table, "--workers", 1]
-    assert command(*spectra).returncode == 0
+    succeeded(*spectra)
     before = table.read_text()
     run, first, second, *_ = map(json.loads, report.read_text().splitlines())
     first["report"] = {"diagonal": 0}

@@ -10,10 +10,9 @@ from typing import Any
 import commands
 import matplotlib.image
 import numpy as np
-import pymeshlab
 import pytest
 from commands import messages_in
-from helpers import diagonal, lower_part, mesh_set_of
+from helpers import diagonal, loaded, lower_part, mesh_set_of
 from meshlab_spectral import FilterOptions, geometry_spectrum
 from meshlab_spectral.cli.spectrum import SHOWN_OPTIONS
 from meshlab_spectral.files.meshes import load_arrays
@@ -45,8 +44,7 @@ def test_the_plot_and_a_table_of_the_octaves_are_made(cow: Path, tmp_path: Path)
 
 
 def test_noise_is_reported_and_shaded(samples: Path, tmp_path: Path) -> None:
-    mesh_set = pymeshlab.MeshSet()
-    mesh_set.load_new_mesh(str(samples / "bunny.obj"))
+    mesh_set = loaded(samples / "bunny.obj")
     mesh_set.meshing_decimation_quadric_edge_collapse(targetfacenum=12000)
     mesh = mesh_set.current_mesh()
     V, F = mesh.vertex_matrix(), mesh.face_matrix()

@@ -10,7 +10,7 @@ import sys
 from pathlib import Path
 
 import pytest
-from commands import COMMAND, PRECIOUS, assert_fails, command
+from commands import COMMAND, PRECIOUS, assert_fails, command, succeeded
 from meshlab_spectral.cli.__main__ import buffer_output
 
 
@@ -22,7 +22,7 @@ def piped(*arguments: object, mesh: bytes = b"") -> subprocess.CompletedProcess[
 @pytest.mark.parametrize("verb", ["filter", "denoise"])
 def test_standard_streams_have_the_bytes_of_files(verb: str, cow: Path, tmp_path: Path) -> None:
     target = tmp_path / "out.obj"
-    assert command(verb, cow, target).returncode == 0
+    succeeded(verb, cow, target)
     done = piped(verb, "-", "-", "--format", "obj", mesh=cow.read_bytes())
     assert done.returncode == 0, done.stderr
     assert done.stdout == target.read_bytes()
@@ -46,7 +46,7 @@ def test_an_output_is_replaced_only_on_request(verb: str, cow: Path, tmp_path: P
     target.write_bytes(PRECIOUS)
     assert_fails(command(verb, cow, target), 2, f"{target} exists", "--overwrite")
     assert target.read_bytes() == PRECIOUS
-    assert command(verb, cow, target, "--overwrite").returncode == 0
+    succeeded(verb, cow, target, "--overwrite")
     assert target.read_bytes() != PRECIOUS
 
 

@@ -11,7 +11,7 @@ import numpy as np
 import plyfile
 import pymeshlab
 import pytest
-from commands import PRECIOUS, command
+from commands import PRECIOUS, command, succeeded
 from helpers import mesh_set_of
 from meshlab_spectral import compare, surface_texture
 from shapes import grid, quads, sphere
@@ -29,9 +29,9 @@ def rough(tmp_path: Path) -> Path:
 
 def test_numbers_and_mesh_are_those_of_the_function(rough: Path, tmp_path: Path) -> None:
     output = tmp_path / "heights.ply"
-    done = command("texture", rough, "--waviness", "0.3", "--json", "--output", output)
-    assert done.returncode == 0, done.stderr
-    record = json.loads(done.stdout)
+    record = json.loads(
+        succeeded("texture", rough, "--waviness", "0.3", "--json", "--output", output).stdout
+    )
     read = plyfile.PlyData.read(rough)
     V = np.column_stack([read["vertex"][axis] for axis in "xyz"]).astype(float)
     F = np.vstack(read["face"]["vertex_indices"])
@@ -45,8 +45,7 @@ def test_numbers_and_mesh_are_those_of_the_function(rough: Path, tmp_path: Path)
 
 
 def test_the_table_has_the_parameters_of_the_standard(rough: Path) -> None:
-    done = command("texture", rough, "--waviness", "0.3")
-    assert done.returncode == 0, done.stderr
+    done = succeeded("texture", rough, "--waviness", "0.3")
     for name in ("Sa", "Sq", "Ssk", "Sku", "Sp", "Sv", "Sz", "Sdq", "Sdr"):
         assert f"{name}, " in done.stdout
 
@@ -62,8 +61,7 @@ def assert_shows_the_deviation(path: Path) -> None:
 
 def test_filter_draws_before_after_and_deviation(rough: Path, tmp_path: Path) -> None:
     path = tmp_path / "change.png"
-    done = command("filter", rough, tmp_path / "out.ply", "--picture", path)
-    assert done.returncode == 0, done.stderr
+    succeeded("filter", rough, tmp_path / "out.ply", "--picture", path)
     assert_shows_the_deviation(path)
 
 
@@ -76,8 +74,7 @@ def test_files_in_colours_are_replaced_only_with_overwrite(rough: Path, tmp_path
         assert f"{path} exists" in done.stderr
         assert not output.exists()
         assert path.read_bytes() == PRECIOUS
-        done = command("denoise", rough, output, option, path, "--overwrite")
-        assert done.returncode == 0, done.stderr
+        done = succeeded("denoise", rough, output, option, path, "--overwrite")
         assert path.read_bytes() != PRECIOUS
     assert_shows_the_deviation(tmp_path / "change.png")
 
@@ -86,9 +83,8 @@ def test_the_coloured_mesh_of_a_filter_is_that_of_the_comparison(
     rough: Path, tmp_path: Path
 ) -> None:
     output, coloured, change = (tmp_path / f"{name}.ply" for name in ("out", "colours", "change"))
-    done = command("filter", rough, output, "--color-displacement", coloured)
-    assert done.returncode == 0, done.stderr
-    assert command("compare", rough, output, "--output", change).returncode == 0
+    done = succeeded("filter", rough, output, "--color-displacement", coloured)
+    succeeded("compare", rough, output, "--output", change)
     assert coloured.read_bytes() == change.read_bytes()
     compared = compare(rough, output)
     vertices = plyfile.PlyData.read(coloured)["vertex"]
@@ -106,9 +102,11 @@ def test_the_selection_of_a_file_is_measured(tmp_path: Path) -> None:
     made.compute_selection_by_condition_per_face(condselect="z0 > 0")
     path = tmp_path / "half.ply"
     made.save_current_mesh(str(path), save_vertex_flag=True, save_face_flag=True)
-    done = command("texture", path, "--waviness", "0.3", "--form", "sphere", "--json", "--selected")
-    assert done.returncode == 0, done.stderr
-    record = json.loads(done.stdout)
+    record = json.loads(
+        succeeded(
+            "texture", path, "--waviness", "0.3", "--form", "sphere", "--json", "--selected"
+        ).stdout
+    )
     assert 0 < record["vertices_evaluated"] < made.current_mesh().vertex_number() * 0.6
     assert record["form_radius"] == pytest.approx(1, rel=0.01)
 
@@ -120,7 +118,7 @@ def test_other_files_are_replaced_on_request_only(rough: Path, tmp_path: Path) -
         done = command(*arguments, "--output", other)
         assert (done.returncode, other.read_text()) == (2, "precious")
         assert "replace it with --overwrite" in done.stderr
-        assert command(*arguments, "--output", other, "-f").returncode == 0
+        succeeded(*arguments, "--output", other, "-f")
         assert other.read_bytes().startswith(b"ply")
 
 
@@ -152,8 +150,7 @@ def test_a_region_of_a_closed_block_is_its_top(block: Path, tmp_path: Path) -> N
     np.savetxt(mask, np.repeat([1, 0], 61 * 61))
     exact = 0.02 / np.sqrt(2) * (1 - 2**-4)
     for region in (["--where", "nz > 0.5"], ["--box", "0,0,0.5,4,4,inf"], ["--mask", mask]):
-        done = command(*measure, *region)
-        assert done.returncode == 0, done.stderr
+        done = succeeded(*measure, *region)
         assert json.loads(done.stdout)["Sq"] == pytest.approx(exact, rel=0.03)
     nowhere = command(*measure, "--box", "9,9,9,10,10,10")
     assert nowhere.returncode == 2
@@ -186,6 +183,5 @@ def test_many_files_are_one_table(rough: Path, tmp_path: Path) -> None:
 
 
 def test_lengths_have_their_unit_and_cutoffs_the_names_of_the_standard(rough: Path) -> None:
-    done = command("texture", rough, "--nesting-index-l", "0.3", "--unit", "mm")
-    assert done.returncode == 0, done.stderr
+    done = succeeded("texture", rough, "--nesting-index-l", "0.3", "--unit", "mm")
     assert "0.3 mm" in done.stdout

@@ -4,13 +4,12 @@ from __future__ import annotations
 
 import os
 import signal
-import subprocess
-import sys
 import time
 from typing import Any
 
 import numpy as np
 import pytest
+from commands import python
 from meshlab_spectral import _core, errors
 from meshlab_spectral.errors import (
     Cancelled,
@@ -177,12 +176,9 @@ else:
 @pytest.mark.parametrize("ending", [INTERRUPTED, ENDING, CALLING_AGAIN, FORKED])
 @pytest.mark.skipif(os.name == "nt", reason="Windows has no signals to send")
 def test_an_interrupt_and_the_interpreters_end_stop_a_run(ending: str) -> None:
-    done = subprocess.run(
-        [sys.executable, "-c", PROGRAM + ending],
-        capture_output=True,
-        text=True,
-        timeout=100,
-        check=False,
+    done = python(
+        "-c",
+        PROGRAM + ending,
         preexec_fn=lambda: signal.signal(signal.SIGINT, signal.default_int_handler),
     )
     assert (done.returncode, done.stdout) == (0, "stopped\n")

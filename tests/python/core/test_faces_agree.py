@@ -37,8 +37,7 @@ def every_inputs(request: pytest.FixtureRequest, decimated: Any) -> Inputs:
 def made_for_pymeshlab(inputs: Inputs) -> pymeshlab.MeshSet:
     V, F, quality, levels, selected = inputs
     colors = np.column_stack([levels / 255, np.ones(len(V))])
-    mesh_set = pymeshlab.MeshSet()
-    mesh_set.add_mesh(pymeshlab.Mesh(V, F, v_scalar_array=quality, v_color_matrix=colors))
+    mesh_set = mesh_set_of(V, F, v_scalar_array=quality, v_color_matrix=colors)
     mesh = mesh_set.current_mesh()
     mesh.add_vertex_custom_scalar_attribute(selected.astype(float), "chosen")
     mesh_set.compute_selection_by_condition_per_vertex(condselect="chosen > 0.5")

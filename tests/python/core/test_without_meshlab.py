@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from commands import command, messages_in
+from commands import command, messages_in, succeeded
 from format_samples import SAMPLES
 
 pytestmark = pytest.mark.slow
@@ -32,8 +32,7 @@ def test_a_batch_filters_every_file_that_is_patched(
     names = [f"{number} {sample.name}" for number, sample in enumerate(SAMPLES)]
     for name, sample in zip(names, SAMPLES, strict=True):
         sample.write(source / name)
-    done = command("batch", source, "--output", target, "--workers", 1, **without_meshlab)
-    assert done.returncode == 0, done.stderr
+    succeeded("batch", source, "--output", target, "--workers", 1, **without_meshlab)
     for name, sample in zip(names, SAMPLES, strict=True):
         before, after = (sample.read(folder / name)["coordinates"] for folder in (source, target))
         assert np.shape(before) == np.shape(after)
@@ -54,8 +53,7 @@ def test_a_command_runs(
 ) -> None:
     SAMPLES[0].write(tmp_path / "mesh.ply")
     arguments = ["mesh.ply" if word == "mesh" else word for word in words]
-    done = command(*arguments, folder=tmp_path, **without_meshlab)
-    assert done.returncode == 0, done.stderr
+    succeeded(*arguments, folder=tmp_path, **without_meshlab)
 
 
 def test_what_needs_meshlab_says_what_to_install(

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import subprocess
-import sys
 from pathlib import Path
 from typing import Any
 
 import matplotlib.image
 import numpy as np
-import pymeshlab
+from commands import python
+from helpers import loaded
 from meshlab_spectral.figures.pictures import Panel, View
 from numpy.typing import NDArray
 from shared_types import Decimated
@@ -31,13 +30,7 @@ def test_the_demo_leaves_a_smoother_bunny_and_a_picture_of_both(
     samples: Path, tmp_path: Path
 ) -> None:
     folder = tmp_path / "demo"
-    done = subprocess.run(
-        [sys.executable, SCRIPTS / "demo.py", folder],
-        capture_output=True,
-        text=True,
-        timeout=120,
-        check=False,
-    )
+    done = python(SCRIPTS / "demo.py", folder)
     assert done.returncode == 0, done.stderr
     assert "Largest displacement" in done.stdout
     assert sorted(path.name for path in folder.iterdir()) == [
@@ -46,8 +39,7 @@ def test_the_demo_leaves_a_smoother_bunny_and_a_picture_of_both(
     ]
     areas = []
     for path in (samples / "bunny.obj", folder / "bunny_filtered.ply"):
-        mesh_set = pymeshlab.MeshSet()
-        mesh_set.load_new_mesh(str(path))
+        mesh_set = loaded(path)
         areas.append(mesh_set.get_geometric_measures()["surface_area"])
     assert areas[1] < 0.95 * areas[0]
 

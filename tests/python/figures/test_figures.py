@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import subprocess
 import sys
 from itertools import pairwise
@@ -16,6 +15,7 @@ import numpy as np
 import parts
 import pytest
 import spectral_reference as reference
+from commands import python
 from eigenfunctions import most_alike
 from figure_numbers import recorded
 from helpers import diagonal, largest_distance, mesh_set_of
@@ -36,14 +36,7 @@ BENCHMARKS = REPOSITORY / "tests" / "benchmarks"
 
 
 def script(name: str, *arguments: object) -> subprocess.CompletedProcess[str]:
-    return subprocess.run(
-        [sys.executable, SCRIPTS / name, *map(str, arguments)],
-        capture_output=True,
-        text=True,
-        timeout=300,
-        check=False,
-        env={**os.environ, "PYTHONPATH": str(BENCHMARKS)},
-    )
+    return python(SCRIPTS / name, *arguments, PYTHONPATH=str(BENCHMARKS))
 
 
 @pytest.fixture

@@ -10,7 +10,7 @@ import matplotlib.image
 import numpy as np
 import pytest
 import pyvista
-from commands import command
+from commands import succeeded
 from helpers import mesh_set_of
 from meshlab_spectral import compare, plot_comparison, plot_texture, surface_texture
 from numpy.typing import NDArray
@@ -45,8 +45,7 @@ def test_a_notebook_shows_the_comparison_that_the_command_draws(
     V, F = rough
     a, b = saved((V, F), tmp_path / "a.ply"), saved((1.1 * V, F), tmp_path / "b.ply")
     picture = tmp_path / "change.png"
-    done = command("compare", a, b, "--picture", picture)
-    assert done.returncode == 0, done.stderr
+    succeeded("compare", a, b, "--picture", picture)
     figure = plot_comparison(compare(a, b), ("a.ply", "b.ply"))
     drawn = matplotlib.image.imread(picture)[..., :3]
     np.testing.assert_allclose(shown(figure), drawn, atol=0.01)
@@ -55,8 +54,7 @@ def test_a_notebook_shows_the_comparison_that_the_command_draws(
 @pytest.mark.slow
 def test_a_notebook_shows_the_texture_that_the_command_draws(rough: Arrays, tmp_path: Path) -> None:
     source, picture = saved(rough, tmp_path / "rough.ply"), tmp_path / "texture.png"
-    done = command("texture", source, "--waviness", "1.5", "--picture", picture)
-    assert done.returncode == 0, done.stderr
+    succeeded("texture", source, "--waviness", "1.5", "--picture", picture)
     figure = plot_texture(rough, surface_texture(rough, waviness=1.5), name="rough.ply")
     drawn = matplotlib.image.imread(picture)[..., :3]
     in_colours = np.ptp(drawn[: -drawn.shape[0] // 3], axis=2) > 0.15

@@ -13,7 +13,7 @@ import numpy as np
 import pymeshlab
 import pytest
 import pyvista
-from helpers import filter_file
+from helpers import filter_file, mesh_set_of
 from meshlab_spectral import DenoiseOptions, FilterOptions
 from meshlab_spectral.errors import FormatError
 from meshlab_spectral.files.filtering import filter_to_scratch
@@ -173,8 +173,7 @@ def test_what_a_scene_loses_is_told(ending: str, tmp_path: Path) -> None:
 def test_every_format_that_only_meshlab_reads_warns_that_it_is_rewritten(
     ending: str, tmp_path: Path
 ) -> None:
-    mesh_set = pymeshlab.MeshSet()
-    mesh_set.add_mesh(pymeshlab.Mesh(*noisy_sphere()))
+    mesh_set = mesh_set_of(*noisy_sphere())
     source, target = tmp_path / f"in{ending}", tmp_path / f"out{ending}"
     if ending == ".3ds":  # which MeshLab may write in a way that it cannot read
         source.write_bytes(as_3ds(*noisy_sphere()))

@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 import pymeshlab
 import pytest
-from helpers import filter_file
+from helpers import filter_file, loaded, mesh_set_of
 from meshlab_spectral import DenoiseOptions, FilterOptions
 from meshlab_spectral.errors import MeshFileError, OptionError
 from meshlab_spectral.files.meshes import load_arrays
@@ -84,8 +84,7 @@ def test_a_transform_of_a_node_is_applied_and_kept(field: Field, target: Target)
     V, F = load_arrays(source)
     assert (V[:, 0].min(), V[:, 0].max()) == pytest.approx((4.9, 5.1), abs=2e-3)
     report = filter_file(source, out, SMOOTH)
-    expected = pymeshlab.MeshSet()
-    expected.add_mesh(pymeshlab.Mesh(V, F))
+    expected = mesh_set_of(V, F)
     expected.apply_coord_spectral_filter_fractional(feature_size=pymeshlab.PercentageValue(15))
     placed, _ = load_arrays(out)
     np.testing.assert_allclose(placed, expected.current_mesh().vertex_matrix(), atol=1e-6)
@@ -210,8 +209,7 @@ def test_a_cut_surface_stays_closed(
 def test_the_patch_of_a_closed_hole_is_reported_as_all_that_moves(
     field: Field, target: Target
 ) -> None:
-    mesh_set = pymeshlab.MeshSet()
-    mesh_set.load_new_mesh(str(field("hole_in_noisy_sphere.ply")))
+    mesh_set = loaded(field("hole_in_noisy_sphere.ply"))
     mesh_set.meshing_close_holes()
     mesh_set.apply_coord_spectral_filter_fractional()
     from meshlab_spectral.plugin.library import last_warnings

@@ -14,6 +14,7 @@ from helpers import (
     custom_attributes,
     decorated,
     filter_arrays,
+    loaded,
     mesh_set_of,
     percent,
     snapshot,
@@ -51,8 +52,7 @@ def test_every_other_attribute_is_kept(name: str, decimated: Decimated) -> None:
 
 
 def test_textures_are_kept(samples: Path) -> None:
-    mesh_set = pymeshlab.MeshSet()
-    mesh_set.load_new_mesh(str(samples / "bunny10k_textured.obj"))
+    mesh_set = loaded(samples / "bunny10k_textured.obj")
     mesh = mesh_set.current_mesh()
     textures, coordinates = list(mesh.textures()), mesh.wedge_tex_coord_matrix()
     assert textures == ["TextureDouble_A.png"]
@@ -103,8 +103,7 @@ def test_after_a_deletion_only_remaining_elements_count(
 ) -> None:
     """Deletion and filter run as one script, so that pymeshlab touches nothing in between."""
     V, F = decimated("cow.obj")
-    script = pymeshlab.MeshSet()
-    script.add_mesh(pymeshlab.Mesh(V, F))
+    script = mesh_set_of(V, F)
     script.compute_selection_by_condition_per_vertex(condselect="(z > 0.4)")
     if what == "vertices":
         script.meshing_remove_selected_vertices()

@@ -6,7 +6,6 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-import pymeshlab
 import pytest
 from helpers import (
     assert_same,
@@ -15,6 +14,7 @@ from helpers import (
     filter_arrays,
     largest_distance,
     length,
+    loaded,
     lower_part,
     mesh_set_of,
     percent,
@@ -57,8 +57,7 @@ def default_smallest_size(V: NDArray[Any], F: NDArray[Any]) -> float:
 def test_the_sliders_stand_at_one_and_the_smallest_size_at_three_edges(
     samples: Path, cow: Arrays
 ) -> None:
-    fine = pymeshlab.MeshSet()
-    fine.load_new_mesh(str(samples / "bunny.obj"))
+    fine = loaded(samples / "bunny.obj")
     for mesh_set in (fine, mesh_set_of(*cow)):
         values = mesh_set.filter_parameter_values(EQUALIZER)
         names = [*SLIDERS, "smallest_size", "selected", "boundary", "accurate"]

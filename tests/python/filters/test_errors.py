@@ -82,10 +82,7 @@ def test_no_mesh_at_all_is_refused() -> None:
 @pytest.mark.parametrize("name", FILTERS.values())
 def test_a_point_cloud_is_refused_with_a_way_to_a_surface(name: str, decimated: Decimated) -> None:
     V, _ = decimated("cow.obj")
-    mesh_set = pymeshlab.MeshSet()
-    mesh_set.add_mesh(
-        pymeshlab.Mesh(V, v_scalar_array=V[:, 0], v_color_matrix=np.full((len(V), 4), 0.5))
-    )
+    mesh_set = mesh_set_of(V, v_scalar_array=V[:, 0], v_color_matrix=np.full((len(V), 4), 0.5))
     before = snapshot(mesh_set.current_mesh())
     message = refusal(mesh_set, name)
     assert "point cloud" in message

@@ -3,12 +3,10 @@
 from __future__ import annotations
 
 import json
-import os
-import subprocess
-import sys
 from pathlib import Path
 
 import pytest
+from commands import python
 from meshlab_spectral.plugin.loading import FILTERS
 
 RUNS, WARM_UP = 40, 10
@@ -54,14 +52,7 @@ print(json.dumps(used))
 @pytest.mark.parametrize("name", FILTERS.values())
 def test_forty_runs_need_no_more_memory_than_the_first_ten(name: str, cow: Path) -> None:
     runs = FEWER_RUNS if name == SLOW else RUNS
-    done = subprocess.run(
-        [sys.executable, "-c", PROGRAM, str(cow), name, str(runs)],
-        env={**os.environ, **ONE_ARENA},
-        capture_output=True,
-        text=True,
-        timeout=300,
-        check=False,
-    )
+    done = python("-c", PROGRAM, cow, name, runs, **ONE_ARENA)
     assert done.returncode == 0, done.stderr
     used = json.loads(done.stdout.splitlines()[-1])
     assert max(used[WARM_UP:]) - max(used[:WARM_UP]) < MEBIBYTES_OF_NOISE, used

@@ -9,7 +9,7 @@ from typing import Any, cast, get_args, get_type_hints
 import numpy as np
 import pymeshlab
 import pytest
-from helpers import FILTER, mesh_set_of, refusal
+from helpers import FILTER, loaded, mesh_set_of, refusal
 from meshlab_spectral import (
     DenoiseOptions,
     FilterOptions,
@@ -58,8 +58,7 @@ def test_names_order_and_defaults_are_those_of_the_plugin(tetrahedron: pymeshlab
 
 
 def test_the_feature_size_of_a_fine_mesh_is_six_mean_edges(samples: Path) -> None:
-    ms = pymeshlab.MeshSet()
-    ms.load_new_mesh(str(samples / "bunny.obj"))
+    ms = loaded(samples / "bunny.obj")
     V, F = ms.current_mesh().vertex_matrix(), ms.current_mesh().face_matrix()
     edges = np.linalg.norm(V[F] - V[np.roll(F, 1, axis=1)], axis=2)
     size = ms.filter_parameter_values(FILTER)["feature_size"]

@@ -15,6 +15,7 @@ from helpers import (
     decorated,
     diagonal,
     filter_arrays,
+    loaded,
     mesh_set_of,
     percent,
     refusal,
@@ -77,8 +78,7 @@ def bends(V: NDArray[Any], F: NDArray[Any]) -> tuple[NDArray[Any], NDArray[Any]]
 
 @pytest.mark.parametrize("name", ["igea.ply", "stanford-bunny.obj"])
 def test_no_crease_appears_at_the_border_of_a_selection(name: str, shared_mesh: SharedMesh) -> None:
-    mesh_set = pymeshlab.MeshSet()
-    mesh_set.load_new_mesh(str(shared_mesh(name)))
+    mesh_set = loaded(shared_mesh(name))
     mesh = mesh_set.current_mesh()
     V, F = mesh.vertex_matrix().copy(), mesh.face_matrix()
     size = {"feature_size": percent(7)}
@@ -155,11 +155,7 @@ def test_an_empty_selection_is_refused(small: tuple[NDArray[Any], NDArray[Any]])
 
 def weighted(small: tuple[NDArray[Any], NDArray[Any]], quality: Any) -> pymeshlab.MeshSet:
     V, F = small
-    mesh_set = pymeshlab.MeshSet()
-    mesh_set.add_mesh(
-        pymeshlab.Mesh(V, F, v_scalar_array=np.broadcast_to(quality, len(V)).astype(float))
-    )
-    return mesh_set
+    return mesh_set_of(V, F, v_scalar_array=np.broadcast_to(quality, len(V)).astype(float))
 
 
 def test_quality_weights_the_filter_at_every_vertex(
@@ -188,8 +184,7 @@ def test_a_quality_that_is_not_a_weight_is_refused(
 
 
 def test_a_mesh_without_quality_has_no_weights(cow: Path) -> None:
-    mesh_set = pymeshlab.MeshSet()
-    mesh_set.load_new_mesh(str(cow))
+    mesh_set = loaded(cow)
     assert "no vertex quality" in refusal(mesh_set, weight="vertex quality", **SIZE)
 
 
@@ -242,8 +237,7 @@ def test_bumps_are_positive_details_and_details_scale_with_weights(
 
 
 def test_there_are_no_details_where_nothing_moves(samples: Path) -> None:
-    mesh_set = pymeshlab.MeshSet()
-    mesh_set.load_new_mesh(str(samples / "bone.ply"))  # with vertices without faces
+    mesh_set = loaded(samples / "bone.ply")  # with vertices without faces
     mesh = mesh_set.current_mesh()
     lonely = np.setdiff1d(np.arange(mesh.vertex_number()), mesh.face_matrix())
     mesh_set.apply_filter(FILTER, result="details", steps=1)

@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 import json
-import subprocess
-import sys
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pymeshlab
 import pytest
+from commands import python
+from helpers import loaded
 from meshlab_spectral import measure_artefacts
 from meshlab_spectral.plugin.loading import FILTERS
 from shared_types import SharedMesh
@@ -19,8 +19,7 @@ from shared_types import SharedMesh
 def filtered(
     path: Path, percentage: float = 15, **options: Any
 ) -> tuple[pymeshlab.MeshSet, dict[str, Any]]:
-    mesh_set = pymeshlab.MeshSet()
-    mesh_set.load_new_mesh(str(path))
+    mesh_set = loaded(path)
     report = mesh_set.apply_coord_spectral_filter_fractional(
         feature_size=pymeshlab.PercentageValue(percentage), **options
     )
@@ -34,8 +33,7 @@ def test_with_the_defaults_no_vertex_moves_farther_than_the_feature_size(
     files = [file for file in sorted(folder.iterdir()) if file.suffix in {".ply", ".obj", ".off"}]
     moved = {}
     for file in files:
-        mesh_set = pymeshlab.MeshSet()
-        mesh_set.load_new_mesh(str(file))
+        mesh_set = loaded(file)
         if mesh_set.current_mesh().face_number() == 0:
             continue
         report = mesh_set.apply_coord_spectral_filter_fractional()
@@ -113,13 +111,7 @@ def test_every_filter_takes_a_real_mesh_at_three_settings_or_says_what_to_choose
     name: str, shared_mesh: SharedMesh, tmp_path: Path
 ) -> None:
     table = tmp_path / "rows.json"
-    done = subprocess.run(
-        [sys.executable, str(BENCHMARK), str(shared_mesh(name)), "--json", str(table)],
-        capture_output=True,
-        text=True,
-        timeout=300,
-        check=False,
-    )
+    done = python(BENCHMARK, shared_mesh(name), "--json", table)
     assert done.returncode == 0, done.stdout + done.stderr
     rows = [json.loads(line) for line in table.read_text().splitlines()]
     assert len(rows) == 3 * len(FILTERS)

@@ -42,8 +42,7 @@ def colours(V: Array) -> NDArray[np.uint8]:
 
 
 def coloured(V: Array, F: NDArray[Any], levels: NDArray[np.uint8]) -> pymeshlab.MeshSet:
-    mesh_set = pymeshlab.MeshSet()
-    mesh_set.add_mesh(pymeshlab.Mesh(V, F, v_color_matrix=levels / 255))
+    mesh_set = mesh_set_of(V, F, v_color_matrix=levels / 255)
     assert np.array_equal(levels_of(mesh_set), levels)
     return mesh_set
 
@@ -237,8 +236,7 @@ def test_noise_is_removed_and_the_field_below_it_is_kept(samples: Path) -> None:
 def test_after_a_deletion_only_remaining_vertices_count(decimated: Decimated) -> None:
     V, F = decimated("cow.obj")
     Q = noisy_field(V)
-    mesh_set = pymeshlab.MeshSet()
-    mesh_set.add_mesh(pymeshlab.Mesh(V, F, v_scalar_array=Q))
+    mesh_set = mesh_set_of(V, F, v_scalar_array=Q)
     mesh_set.compute_selection_by_condition_per_vertex(condselect="(z > 0.4)")
     mesh_set.meshing_remove_selected_vertices()
     mesh_set.apply_filter(QUALITY, feature_size=length(0.25))
@@ -260,15 +258,13 @@ def test_infinite_values_are_counted_and_located_and_the_advice_helps(
     Q[[17, 40]] = value
     with pytest.raises(FilterError, match="2 vertices have an infinite value, the first is ver"):
         filter_scalars(V, F, Q)
-    mesh_set = pymeshlab.MeshSet()
-    mesh_set.add_mesh(pymeshlab.Mesh(V, F, v_scalar_array=Q))
+    mesh_set = mesh_set_of(V, F, v_scalar_array=Q)
     before = snapshot(mesh_set.current_mesh())
     advice = "'Per Vertex Quality Function' with abs(q) < 1e30 ? q : 0/0"
     assert advice in refusal(mesh_set, QUALITY)
     assert_same(before, snapshot(mesh_set.current_mesh()))
 
-    advised = pymeshlab.MeshSet()
-    advised.add_mesh(pymeshlab.Mesh(V, F, v_scalar_array=Q))
+    advised = mesh_set_of(V, F, v_scalar_array=Q)
     advised.compute_scalar_by_function_per_vertex(q="abs(q) < 1e30 ? q : 0/0")
     mended = advised.current_mesh().vertex_scalar_array()
     np.testing.assert_array_equal(mended, np.where(np.isfinite(Q), Q, np.nan))
@@ -402,8 +398,7 @@ def test_a_gain_out_of_reach_is_refused_recommending_only_options_of_the_filter(
     loaded = pymeshlab.MeshSet()
     loaded.load_new_mesh(str(samples / "bunny.obj"))
     V, F = loaded.current_mesh().vertex_matrix(), loaded.current_mesh().face_matrix()
-    mesh_set = pymeshlab.MeshSet()
-    mesh_set.add_mesh(pymeshlab.Mesh(V, F, v_scalar_array=noisy_field(V)))
+    mesh_set = mesh_set_of(V, F, v_scalar_array=noisy_field(V))
     main, ours = (mesh_set.filter_parameter_values(name) for name in (FILTER, QUALITY))
     before = snapshot(mesh_set.current_mesh())
     message = refusal(mesh_set, QUALITY, **options)

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import pymeshlab
 import pytest
-from commands import arrays_of, command
+from commands import arrays_of, succeeded
 from helpers import diagonal, mesh_set_of, percent
 from meshlab_spectral import (
     denoise_mesh,
@@ -184,8 +184,7 @@ def test_no_default_of_a_command_depends_on_them(name: str, shape: Shape, tmp_pa
     for number, W in enumerate((V, with_unused(V, 5))):
         source, target = tmp_path / f"{number}.ply", tmp_path / f"{number}_out.ply"
         mesh_set_of(W, F).save_current_mesh(str(source))
-        done = command(name, source, target)
-        assert done.returncode == 0, done.stderr
+        done = succeeded(name, source, target)
         assert (ENLARGING in done.stderr) == (number == 1)
         results.append(arrays_of(target)[0][: len(V)])
     assert not np.array_equal(results[0], V)
@@ -196,6 +195,5 @@ def test_the_command_info_suggests_the_same_size_and_warns(shape: Shape, tmp_pat
     V, F = shape
     source = tmp_path / "far.ply"
     mesh_set_of(with_unused(V, 5), F).save_current_mesh(str(source))
-    done = command("info", source)
-    assert done.returncode == 0, done.stderr
+    done = succeeded("info", source)
     assert "1 vertex without faces enlarges" in done.stdout + done.stderr

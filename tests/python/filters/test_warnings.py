@@ -4,8 +4,6 @@ from __future__ import annotations
 
 import json
 import re
-import subprocess
-import sys
 import threading
 from pathlib import Path
 from typing import Any
@@ -14,7 +12,7 @@ import numpy as np
 import pytest
 import pyvista
 from batches import REPORT, make_meshes, records
-from commands import command, messages_in, write_ply
+from commands import command, messages_in, python, write_ply
 from helpers import FILTER, mesh_set_of, percent, refusal
 from meshlab_spectral import filter_files, filter_mesh, filter_scalars
 from meshlab_spectral.files.script import apply_script
@@ -46,13 +44,7 @@ print("WARNINGS", json.dumps(report["warnings"]))
 
 def log_of(source: Path, name: str, options: dict[str, Any]) -> str:
     """What pymeshlab prints during a call, and a line with its warnings."""
-    done = subprocess.run(
-        [sys.executable, "-c", PROGRAM, str(source), name, json.dumps(options)],
-        capture_output=True,
-        text=True,
-        timeout=60,
-        check=True,
-    )
+    done = python("-c", PROGRAM, source, name, json.dumps(options), check=True)
     return done.stdout + done.stderr
 
 

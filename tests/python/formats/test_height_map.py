@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 import rasterio
 import surfalize
-from commands import command
+from commands import command, succeeded
 from meshlab_spectral import MeshFileError, surface_texture
 from meshlab_spectral.formats.document import Array, Part
 from meshlab_spectral.formats.height_map import read
@@ -150,9 +150,9 @@ def test_what_is_no_height_map_over_a_plane_is_refused(tmp_path: Path) -> None:
 
 def test_texture_of_a_map_is_that_of_surfalize_in_micrometres(tmp_path: Path) -> None:
     path = saved(heights(200, 240), tmp_path / "map.sur")
-    done = command("texture", path, "--form", "plane", "--waviness", "100%", "--json")
-    assert done.returncode == 0, done.stderr
-    record = json.loads(done.stdout)
+    record = json.loads(
+        succeeded("texture", path, "--form", "plane", "--waviness", "100%", "--json").stdout
+    )
     surface = surfalize.Surface.load(path).level()
     for name in ("Sa", "Sq", "Sz", "Sku", "Sdq"):
         assert record[name] == pytest.approx(getattr(surface, name)(), rel=0.01), name
@@ -172,8 +172,7 @@ def test_autocorrelation_lengths_of_a_map_are_those_of_surfalize(tmp_path: Path)
 
 def test_a_map_becomes_a_mesh_and_is_never_written(tmp_path: Path) -> None:
     path = saved(heights(), tmp_path / "map.x3p")
-    done = command("filter", path, tmp_path / "out.ply", "--feature-size", "6e")
-    assert done.returncode == 0, done.stderr
+    succeeded("filter", path, tmp_path / "out.ply", "--feature-size", "6e")
     assert (tmp_path / "out.ply").is_file()
     refusal = command("filter", path, tmp_path / "out.x3p")
     assert refusal.returncode == 2

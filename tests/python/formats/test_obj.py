@@ -7,8 +7,8 @@ import shutil
 from pathlib import Path
 
 import numpy as np
-import pymeshlab
 import pytest
+from helpers import loaded
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from meshlab_spectral.errors import MeshFileError
@@ -201,8 +201,7 @@ def test_a_bunny_is_read_as_meshlab_reads_it_and_only_its_vertices_change(
     samples: Path, tmp_path: Path
 ) -> None:
     path = Path(shutil.copyfile(samples / "bunny10k_textured.obj", tmp_path / "in.obj"))
-    mesh_set = pymeshlab.MeshSet()
-    mesh_set.load_new_mesh(str(path))
+    mesh_set = loaded(path)
     (part,) = read(path).parts
     np.testing.assert_array_equal(part.vertices, mesh_set.current_mesh().vertex_matrix())
     np.testing.assert_array_equal(part.faces, mesh_set.current_mesh().face_matrix())

@@ -6,9 +6,9 @@ import re
 from pathlib import Path
 
 import numpy as np
-import pymeshlab
 import pytest
 import pyvista
+from helpers import loaded
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from meshlab_spectral.errors import MeshFileError
@@ -149,8 +149,7 @@ def test_only_the_numbers_of_moved_vertices_and_their_normals_change(tmp_path: P
 
 def test_a_cow_is_read_as_meshlab_reads_it(samples: Path, tmp_path: Path) -> None:
     path = tmp_path / "cow.off"
-    mesh_set = pymeshlab.MeshSet()
-    mesh_set.load_new_mesh(str(samples / "cow.obj"))
+    mesh_set = loaded(samples / "cow.obj")
     mesh_set.save_current_mesh(str(path))
     mesh_set.load_new_mesh(str(path))
     (part,) = read(path).parts

@@ -5,9 +5,9 @@ from __future__ import annotations
 from pathlib import Path
 
 import numpy as np
-import pymeshlab
 import pytest
 import pyvista
+from helpers import loaded
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from meshlab_spectral.errors import MeshFileError
@@ -98,8 +98,7 @@ def test_bent_quadrilaterals_are_split_as_meshlab_splits_them(format_: str, tmp_
     vertices = np.vstack([np.add(square, [2 * k, 0, 0]) for k in range(100)])
     vertices += np.random.default_rng(5).normal(0, 0.12, vertices.shape)
     path = write(tmp_path / f"in.{format_}", vertices, np.arange(400).reshape(-1, 4).tolist())
-    mesh_set = pymeshlab.MeshSet()
-    mesh_set.load_new_mesh(str(path))
+    mesh_set = loaded(path)
     (part,) = open_document(path).parts
     np.testing.assert_array_equal(part.faces, mesh_set.current_mesh().face_matrix())
 

@@ -14,8 +14,8 @@ from pathlib import Path
 from xml.etree import ElementTree
 
 import numpy as np
-import pymeshlab
 import pytest
+from helpers import mesh_set_of
 from hypothesis import example, given
 from hypothesis import strategies as st
 from meshlab_spectral import _core
@@ -225,8 +225,7 @@ def write_sheet(path: Path, side: int) -> int:
     """Let pymeshlab write side x side vertices as text; return its length."""
     index = np.arange(side * side).reshape(side, side)
     F = np.column_stack([index[:-1, :-1].ravel(), index[1:, :-1].ravel(), index[:-1, 1:].ravel()])
-    meshes = pymeshlab.MeshSet()
-    meshes.add_mesh(pymeshlab.Mesh(np.random.default_rng(1).normal(0, 1, (side * side, 3)), F))
+    meshes = mesh_set_of(np.random.default_rng(1).normal(0, 1, (side * side, 3)), F)
     is_text = {"binary": False} if path.suffix in (".ply", ".stl") else {}
     before = locale.setlocale(locale.LC_ALL)
     meshes.save_current_mesh(str(path), **is_text)

@@ -4,11 +4,10 @@ from __future__ import annotations
 
 import os
 import signal
-import subprocess
-import sys
 from pathlib import Path
 
 import pytest
+from commands import python
 
 # The call would take minutes. The signal comes from a thread, once the filter is at work.
 PROGRAM = """
@@ -47,12 +46,11 @@ LONG = "steps=1000, basis_update='full'"
 )
 @pytest.mark.skipif(os.name == "nt", reason="Windows has no signals to send")
 def test_an_interrupt_stops_a_filter(call: str, samples: Path) -> None:
-    done = subprocess.run(
-        [sys.executable, "-c", PROGRAM, str(samples / "bunny.obj"), call],
-        capture_output=True,
-        text=True,
-        timeout=100,
-        check=False,
+    done = python(
+        "-c",
+        PROGRAM,
+        samples / "bunny.obj",
+        call,
         preexec_fn=lambda: signal.signal(signal.SIGINT, signal.default_int_handler),
     )
     assert done.returncode == 0, done.stderr

@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 import importlib.metadata
-import os
 import subprocess
-import sys
 from pathlib import Path
 
 import meshlab_spectral
 import pymeshlab
 import pytest
+from commands import python
 from helpers import FILTER
 from meshlab_spectral import PluginError
 from meshlab_spectral.plugin import loading
@@ -18,14 +17,7 @@ from meshlab_spectral.plugin import loading
 
 def run_python(code: str, **environment: str) -> subprocess.CompletedProcess[str]:
     """Run code in a fresh interpreter, in which no plugin has been loaded."""
-    return subprocess.run(
-        [sys.executable, "-c", code],
-        env={**os.environ, **environment},
-        capture_output=True,
-        text=True,
-        timeout=60,
-        check=False,
-    )
+    return python("-c", code, **environment)
 
 
 def test_load_binds_the_filter_as_a_method_of_mesh_set() -> None:

@@ -9,9 +9,8 @@ from typing import Any
 
 import numpy as np
 import psutil
-import pymeshlab
 import pytest
-from helpers import refusal
+from helpers import loaded, refusal
 from meshlab_spectral import (
     FilterError,
     FilterOptions,
@@ -54,8 +53,7 @@ def test_an_invalid_limit_is_refused(limit: Any) -> None:
 
 @pytest.mark.parametrize("spectrum", ["full", "truncated"])
 def test_a_filter_beyond_the_limit_is_refused_with_numbers(spectrum: str, samples: Path) -> None:
-    meshes = pymeshlab.MeshSet()
-    meshes.load_new_mesh(str(samples / "cow.obj"))
+    meshes = loaded(samples / "cow.obj")
     before = meshes.current_mesh().vertex_matrix().copy()
     set_memory_limit(1)
     words = "needs about .* more memory, of which 0 MiB are free: simplify it"
@@ -64,8 +62,7 @@ def test_a_filter_beyond_the_limit_is_refused_with_numbers(spectrum: str, sample
 
 
 def test_a_basis_beyond_the_limit_is_refused_with_the_size_that_fits(samples: Path) -> None:
-    meshes = pymeshlab.MeshSet()
-    meshes.load_new_mesh(str(samples / "bunny.obj"))  # 1000 harmonics take 290 MB, the rest 28 MB
+    meshes = loaded(samples / "bunny.obj")  # 1000 harmonics take 290 MB, the rest 28 MB
     before = meshes.current_mesh().vertex_matrix().copy()
     set_memory_limit(psutil.Process().memory_info().rss + 150 * MEBIBYTE)
     words = r"harmonics of .* need about .* are free: choose at most (\d+).* spectrum = full"

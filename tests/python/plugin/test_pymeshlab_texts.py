@@ -10,6 +10,7 @@ import numpy as np
 import pymeshlab
 import pytest
 import pyvista
+from helpers import mesh_set_of
 from meshlab_spectral.plugin.loading import FILTERS
 
 _SPHERE = pyvista.Icosphere(nsub=1)
@@ -25,9 +26,7 @@ WRONG: dict[type, list[Any]] = {
 @pytest.fixture
 def mesh_set() -> Any:
     meshlab_spectral.load()
-    made = pymeshlab.MeshSet()
-    made.add_mesh(pymeshlab.Mesh(np.array(_SPHERE.points), np.array(_SPHERE.regular_faces)))
-    return made
+    return mesh_set_of(np.array(_SPHERE.points), np.array(_SPHERE.regular_faces))
 
 
 @pytest.mark.parametrize("name", FILTERS.values())

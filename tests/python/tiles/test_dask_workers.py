@@ -12,7 +12,7 @@ import numpy as np
 import psutil
 import pytest
 from batches import wait_until
-from commands import assert_fails, command
+from commands import assert_fails, command, succeeded
 from dask_clusters import dask_cluster, meshlab_processes
 from meshlab_spectral import BatchError, FilterOptions, MeshFileError
 from meshlab_spectral.errors import FilterError, MeshError
@@ -70,9 +70,8 @@ def test_a_cluster_gives_the_same_bytes_as_this_machine(
     name, *options = arguments
     local = target.with_stem("local")
     tiles = [] if "--tiles" in options else ["--tiles", 2]
-    assert command(name, source, local, *options, *tiles).returncode == 0
-    done = command(name, source, target, *options, "--scheduler", cluster)
-    assert done.returncode == 0, done.stderr
+    succeeded(name, source, local, *options, *tiles)
+    done = succeeded(name, source, target, *options, "--scheduler", cluster)
     assert f"tiles by the workers at {cluster}" in done.stderr
     assert target.read_bytes() == local.read_bytes() != source.read_bytes()
     assert {path.name for path in target.parent.iterdir()} == {target.name, local.name}
@@ -224,7 +223,6 @@ def test_what_excludes_a_scheduler_is_named(
 def test_a_dry_run_asks_the_workers_how_many_tiles_there_are(
     cluster: str, source: Path, target: Path
 ) -> None:
-    done = command("filter", source, target, "--dry-run", "--scheduler", cluster)
-    assert done.returncode == 0, done.stderr
+    done = succeeded("filter", source, target, "--dry-run", "--scheduler", cluster)
     assert "in 2 tiles" in done.stdout
     assert not list(target.parent.iterdir())

@@ -8,8 +8,6 @@ import re
 import resource
 import shutil
 import signal
-import subprocess
-import sys
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
@@ -17,7 +15,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from commands import command
+from commands import command, python, succeeded
 from meshlab_spectral import FilterOptions, MemoryLimitError, MeshFileError
 from meshlab_spectral.errors import FilterError, OptionError, ProcessDiedError, UntiledError
 from meshlab_spectral.files.request import Request
@@ -278,18 +276,16 @@ def test_a_full_disk_loses_nothing(room: int, source: Path, tmp_path: Path) -> N
         "--passes",
         1,
     ]
-    full = subprocess.run(
-        [sys.executable, "-m", "meshlab_spectral.cli", *map(str, arguments)],
-        capture_output=True,
-        text=True,
-        check=False,
+    full = python(
+        "-m",
+        "meshlab_spectral.cli",
+        *arguments,
         preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (room, room)),
     )
     assert full.returncode == 1, full.stderr
     assert "make room" in full.stderr
     assert target.read_bytes() == b"before"
-    done = command(*arguments)
-    assert done.returncode == 0, done.stderr
+    done = succeeded(*arguments)
     assert "is processed in 8 tiles" in done.stderr
     assert _is_as_never_interrupted(source, target)
 

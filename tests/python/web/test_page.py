@@ -7,11 +7,10 @@ import subprocess
 from pathlib import Path
 
 import numpy as np
-import pymeshlab
 import pytest
 import pyvista
 import trimesh
-from helpers import mesh_set_of
+from helpers import loaded, mesh_set_of
 from meshlab_spectral import denoise_mesh
 from numpy.typing import NDArray
 from PIL import Image
@@ -85,8 +84,7 @@ def write_part(path: Path, V: NDArray[np.float64], F: NDArray[np.int64]) -> None
 
 def read(path: Path) -> Arrays:
     if path.suffix == ".3mf":  # MeshLab reads it by lib3mf
-        mesh_set = pymeshlab.MeshSet()
-        mesh_set.load_new_mesh(str(path))
+        mesh_set = loaded(path)
         return mesh_set.current_mesh().vertex_matrix(), mesh_set.current_mesh().face_matrix()
     mesh = trimesh.load(path, process=False, force="mesh")
     return mesh.vertices, mesh.faces

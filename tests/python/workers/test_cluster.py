@@ -14,7 +14,7 @@ from unittest.mock import patch
 import psutil
 import pytest
 from batches import REPORT, contents, make_meshes, records, start_batch, wait_until
-from commands import command, messages_in
+from commands import messages_in, succeeded
 from dask_clusters import dask_cluster, meshlab_processes
 from distributed import get_worker
 from meshlab_spectral import BatchError, filter_files
@@ -36,7 +36,7 @@ def meshes(tmp_path_factory: pytest.TempPathFactory) -> Path:
 @pytest.fixture(scope="module")
 def expected(meshes: Path, tmp_path_factory: pytest.TempPathFactory) -> dict[str, bytes]:
     out = tmp_path_factory.mktemp("expected") / "out"
-    assert command("batch", meshes, "--output", out, "--steps", 1).returncode == 0
+    succeeded("batch", meshes, "--output", out, "--steps", 1)
     return contents(out)
 
 
@@ -52,8 +52,7 @@ def test_an_existing_cluster_gives_the_same_outputs(
     cluster: str, meshes: Path, expected: dict[str, bytes], tmp_path: Path
 ) -> None:
     out = tmp_path / "out"
-    done = command("batch", meshes, "--output", out, "--steps", 1, "--scheduler", cluster)
-    assert done.returncode == 0, done.stderr
+    succeeded("batch", meshes, "--output", out, "--steps", 1, "--scheduler", cluster)
     assert contents(out) == expected
     assert len(records(out / REPORT)) == 6
 
@@ -168,8 +167,7 @@ def test_an_interrupted_batch_ends_its_processes_on_the_workers_and_resumes(tmp_
         wait_until(lambda: not meshlab_processes(workers))
         done = records(out / REPORT)
         assert {record["outcome"] for record in done} == {"filtered"}
-        resumed = command("batch", folder, *options, "--resume")
-        assert resumed.returncode == 0, resumed.stderr
+        resumed = succeeded("batch", folder, *options, "--resume")
         rest = MESHES - len(done)
         assert f"{rest} filtered, 0 failed, {len(done)} already done" in resumed.stdout
         assert not list(out.rglob("*.partial"))

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import os
 import signal
-import subprocess
 import sys
 from pathlib import Path
 from typing import Any
@@ -12,6 +11,7 @@ from typing import Any
 import psutil
 import pytest
 from batches import alive, wait_until
+from commands import python
 from meshlab_spectral import FilterOptions
 from meshlab_spectral.errors import (
     MemoryLimitError,
@@ -138,13 +138,7 @@ def test_a_killed_parent_leaves_no_process_at_work(
     script: str | None, samples: Path, tmp_path: Path
 ) -> None:
     job = as_text(work(samples / "bunny.obj", tmp_path, script=script))
-    done = subprocess.run(
-        [sys.executable, "-c", PARENT, job],
-        capture_output=True,
-        text=True,
-        timeout=60,
-        check=False,
-    )
+    done = python("-c", PARENT, job)
     assert done.returncode == -signal.SIGKILL, done.stderr
     child = int(done.stdout.split()[0])
     wait_until(lambda: not (psutil.pid_exists(child) and alive([psutil.Process(child)])), 5)
