@@ -2,14 +2,15 @@
 
 It reads jobs from standard input, one per line, and answers each on standard output with JSON
 lines: {"ready": true} once, then {"stage": ...} as the work proceeds, and {"report": ...} or
-{"error": ...} at its end. Jobs and errors are pickled, see `workers.process`. MeshLab's own output
-goes to standard error.
+{"error": ...} at its end. Jobs and errors are pickled, as `as_text` of `workers.process` does, a
+slow import. MeshLab's own output goes to standard error.
 
 It ends at the end of its input, whatever MeshLab is doing: it never outlives its parent.
 """
 
 from __future__ import annotations
 
+import base64
 import json
 import os
 import pickle
@@ -37,7 +38,6 @@ from meshlab_spectral.files.whole_files import file_trouble, is_disk_full
 from meshlab_spectral.formats.budget import guard_process
 from meshlab_spectral.plugin.limits import name_memory_limit, set_memory_limit
 from meshlab_spectral.tiles.tile import filter_tile
-from meshlab_spectral.workers.process import as_text, from_text
 
 # What a job may call: each takes the entries of the job by name, and `on_stage`.
 _CALLS: dict[str, Callable[..., Any]] = {
@@ -103,7 +103,7 @@ def _main() -> None:
     job: dict[str, Any] = {}
     while True:
         try:
-            job = from_text(jobs.get())
+            job = pickle.loads(base64.b64decode(jobs.get()))
             memory, file, call = (job.pop(name, None) for name in ("memory", "result", "call"))
             set_memory_limit(memory)
             name_memory_limit("the memory limit")  # the parent says which
@@ -113,7 +113,7 @@ def _main() -> None:
                 file.write_bytes(pickle.dumps(report))
             answer(report=report if file is None else {})
         except Exception as error:
-            told = as_text(_told(error, job))
+            told = base64.b64encode(pickle.dumps(_told(error, job))).decode()
             answer(error=told, traceback=traceback.format_exc().strip())
 
 
