@@ -17,7 +17,7 @@ ARROWS = {
     "harmonics": {"laplacian", "ldlt", "mesh", "support"},
     "graph": {"mesh", "support"},
     "noise": {"graph", "mesh", "support"},
-    "denoise": {"noise", "graph", "laplacian", "mesh", "support"},
+    "denoise": {"noise", "graph", "krylov", "laplacian", "mesh", "support"},
     "filter": {"transfer", "krylov", "harmonics", "laplacian", "ldlt", "mesh", "support"},
     "analysis": {
         "filter",

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numeric>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -11,6 +12,7 @@
 #include "core/graph/diffusion.h"
 #include "core/graph/local_average.h"
 #include "core/graph/robust_statistics.h"
+#include "core/krylov/chebyshev_series.h"
 #include "core/noise/noise_estimate.h"
 
 namespace spectral {
@@ -18,21 +20,43 @@ namespace spectral {
 namespace {
 
 /// Positions, and white noise that undergoes the same steps.
-using Rows = Eigen::Matrix<double, Eigen::Dynamic, 4, Eigen::RowMajor>;
+using Shapes = Eigen::Matrix<double, Eigen::Dynamic, 4, Eigen::RowMajor>;
 
-/// Numbers of steps to try, and those before the normals are taken.
+/// Numbers of steps to try, and the stage whose normals are taken.
 constexpr std::array<int, 11> kSteps{5, 10, 14, 20, 28, 40, 56, 80, 113, 160, 226};
-constexpr int kStepsToNormals = 20;
+constexpr std::size_t kStageOfNormals = 3;
 
-void takeSteps(const VertexGraph& graph, int count, Rows& X) {
-    Rows next = X;
-    for (int k = 0; k < count; ++k)
-        for (const double factor : {0.6, -0.61}) {
-            forEachMean(graph, X, [&](Index i, const auto& mean) {
-                next.row(i) = (1.0 - factor) * X.row(i) + factor * mean;
-            });
-            X.swap(next);
-        }
+/// Chebyshev coefficients of `count` steps in P, where L = I - P: the gain is flat where P is near
+/// 1, and 20 steps need ten products, not 40.
+std::vector<double> coefficientsOf(int count) {
+    constexpr double kAccuracy = 1e-4;
+    constexpr int kNodes = 64;
+    const ChebyshevSeries series(
+        [&](double p) {
+            return std::pow((1.0 - 0.6 * (1.0 - p)) * (1.0 + 0.61 * (1.0 - p)), count);
+        },
+        -1.0, 1.0, kNodes);
+    std::vector<double> c = series.coefficients();
+    c.resize(static_cast<std::size_t>(std::max(series.lengthFor(kAccuracy), 2)));
+    c[0] += 1.0 - std::accumulate(c.begin(), c.end(), 0.0);  // a place stays
+    return c;
+}
+
+void takeSteps(const VertexGraph& graph, int count, Shapes& X) {
+    const std::vector<double> c = coefficientsOf(count);
+    Shapes before = X, here = X, next = X;
+    forEachMean(graph, before, [&](Index i, const auto& mean) {
+        here.row(i) = mean;
+        X.row(i) = c[0] * before.row(i) + c[1] * mean;
+    });
+    for (std::size_t j = 2; j < c.size(); ++j) {
+        forEachMean(graph, here, [&](Index i, const auto& mean) {
+            next.row(i) = 2.0 * mean - before.row(i);
+            X.row(i) += c[j] * next.row(i);
+        });
+        before.swap(here);
+        here.swap(next);
+    }
 }
 
 /// Squared difference to the neighbours, on average, at every vertex, of each column of Y.
@@ -83,8 +107,8 @@ constexpr double kTiny = 1e-300;
 
 /// The stages of the steps, and which of them has least error in each place.
 struct Stages {
-    std::vector<Points> X;
-    std::vector<int> steps;
+    std::vector<Shapes> shapes;
+    std::size_t count = 0;  ///< Those that are better somewhere than all before.
     Eigen::VectorXd best;   ///< n: index of the stage, between two of them as well.
     Eigen::VectorXd error;  ///< n: of the slopes, relative to those of the noise.
 };
@@ -100,21 +124,24 @@ Stages takeStages(const FaceGraph& graph, const VertexGraph& averaged, const Poi
     const Eigen::VectorXd white = withProbes<1>(X).col(3).cwiseProduct(noise.height);
     const Eigen::VectorXd whiteSlope =
         average.of(squaredSlopes(graph.vertices, white)).cwiseMax(kTiny);
-    Rows start(n, 4);
+    Shapes start(n, 4);
     start << X, white;
-    Rows Y = start;
-    takeSteps(averaged, kStepsToNormals, Y);
-    // The same normals for all steps, so that a change of normals is not mistaken for shape.
-    const Points N = smoothVertexNormals(graph, Y.leftCols<3>(), 1);
-
-    Y = start;
     Stages stages;
+    const auto shapeAt = [&](std::size_t stage) -> const Shapes& {
+        for (std::size_t k = stages.shapes.size(); k <= stage; ++k) {
+            stages.shapes.push_back(k == 0 ? start : stages.shapes.back());
+            takeSteps(averaged, k == 0 ? kSteps[0] : kSteps[k] - kSteps[k - 1],
+                      stages.shapes.back());
+        }
+        return stages.shapes[stage];
+    };
+    // The same normals for all steps, so that a change of normals is not mistaken for shape.
+    const Points N = smoothVertexNormals(graph, shapeAt(kStageOfNormals).leftCols<3>(), 1);
+
     Eigen::VectorXd least, first;
     stages.best.setZero(n);
-    int taken = 0;
-    for (const int steps : kSteps) {
-        takeSteps(averaged, steps - taken, Y);
-        taken = steps;
+    for (; stages.count < kSteps.size(); ++stages.count) {
+        const Shapes& Y = shapeAt(stages.count);
         Slopes slopes(n, 3);  // of the displacement, of what is taken from noise, and left of it
         slopes.col(0) = (Y.leftCols<3>() - X).cwiseProduct(N).rowwise().sum();
         slopes.col(1) = white - Y.col(3);
@@ -122,7 +149,7 @@ Stages takeStages(const FaceGraph& graph, const VertexGraph& averaged, const Poi
         slopes = average.of(squaredSlopes(graph.vertices, slopes));
         const Eigen::VectorXd fromNoise = slopes.col(1).cwiseMax(kTiny);
         const Eigen::VectorXd ratio = slopes.col(0).cwiseQuotient(fromNoise);
-        const bool isFirst = stages.X.empty();
+        const bool isFirst = stages.count == 0;
         if (isFirst) first = ratio.cwiseMax(kTiny);  // the first steps remove only noise
         const Eigen::VectorXd error =
             ((ratio.cwiseQuotient(first).array() - 1.0).max(0.0) * fromNoise.array() +
@@ -133,12 +160,10 @@ Stages takeStages(const FaceGraph& graph, const VertexGraph& averaged, const Poi
         for (Index i = 0; i < n; ++i)
             if (mayMove[i] && error[i] < least[i]) {
                 least[i] = error[i];
-                stages.best[i] = static_cast<double>(stages.X.size());
+                stages.best[i] = static_cast<double>(stages.count);
                 isBetter = true;
             }
         if (!isBetter) break;
-        stages.X.emplace_back(Y.leftCols<3>());
-        stages.steps.push_back(steps);
     }
     stages.best = Average(graph.vertices, mayMove, kCounts, noise.isAlike()).of(stages.best);
     stages.error = least.cwiseSqrt();
@@ -148,14 +173,15 @@ Stages takeStages(const FaceGraph& graph, const VertexGraph& averaged, const Poi
 /// The shape of each place at its best stage.
 Points shapeOf(const Stages& stages, const Points& X, const std::vector<bool>& mayMove) {
     Points shape = X;
-    const double last = static_cast<double>(stages.X.size()) - 1.0;
+    const double last = static_cast<double>(stages.count) - 1.0;
     for (Index i = 0; i < X.rows(); ++i) {
         if (!mayMove[i]) continue;
-        const double at = std::clamp(stages.best[i], 0.0, last);
-        const auto low = static_cast<std::size_t>(at),
-                   high = std::min(low + 1, stages.X.size() - 1);
-        const double fraction = at - static_cast<double>(low);
-        shape.row(i) = (1.0 - fraction) * stages.X[low].row(i) + fraction * stages.X[high].row(i);
+        const double best = std::clamp(stages.best[i], 0.0, last);
+        const auto low = static_cast<std::size_t>(best), high = std::min(low + 1, stages.count - 1);
+        const double fraction = best - static_cast<double>(low);
+        const Eigen::RowVector4d at =
+            (1.0 - fraction) * stages.shapes[low].row(i) + fraction * stages.shapes[high].row(i);
+        shape.row(i) = at.head<3>();
     }
     return shape;
 }
@@ -225,7 +251,7 @@ LinearSteps linearSteps(const FaceGraph& graph, const VertexGraph& means, const 
     const Stages stages =
         takeStages(graph, averagedNeighbours(graph, means, mayMove), X, mayMove, noise);
     LinearSteps result;
-    result.steps = stages.steps.back();
+    result.steps = kSteps[stages.count - 1];
     result.X = shapeOf(stages, X, mayMove);
     result.N = areaNormals(result.X, graph.F);
     normalizeRows(result.N);

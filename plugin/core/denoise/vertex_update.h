@@ -16,15 +16,15 @@ namespace spectral {
 /// @param X        n x 3 positions.
 /// @param N        m x 3 unit normals.
 /// @param mayMove  n: whether a vertex may move.
-/// @param sweeps   number of iterations, >= 0.
+/// @param sweeps   number of iterations, >= 1; summed as a polynomial of lower degree, to 3e-4.
 /// @return         n x 3 positions.
-Points followNormals(const FaceGraph& graph, Points X, const Points& N,
+Points followNormals(const FaceGraph& graph, const Points& X, const Points& N,
                      const std::vector<bool>& mayMove, int sweeps);
 
 /// The same, but vertices move along given lines only, such as the rays of a camera, on which its
 /// noise lies.
 /// @param D  n x 3 unit directions.
-Points followNormalsAlong(const FaceGraph& graph, Points X, const Points& N, const Points& D,
+Points followNormalsAlong(const FaceGraph& graph, const Points& X, const Points& N, const Points& D,
                           const std::vector<bool>& mayMove, int sweeps);
 
 }  // namespace spectral

@@ -95,9 +95,11 @@ TEST(NormalFilter, SmoothsNoiseMoreWhereEdgesAreShort) {
 }
 
 TEST(NormalFilter, LeavesDegenerateFacesWithoutNormals) {
-    const Mesh needles{(Vertices(4, 3) << 0, 0, 0, 1, 0, 0, 2, 0, 0, 4, 0, 0).finished(),
-                       (Faces(2, 3) << 0, 1, 2, 1, 3, 2).finished()};
-    EXPECT_EQ(filterNormals(faceGraph(needles.F, 4), needles.V, {}), Points::Zero(2, 3));
+    Points X(4, 3);
+    X << 0, 0, 0, 1, 0, 0, 2, 0, 0, 4, 0, 0;
+    Faces F(2, 3);
+    F << 0, 1, 2, 1, 3, 2;
+    EXPECT_EQ(filterNormals(faceGraph(F, 4), X, {}), Points::Zero(2, 3));
 }
 
 TEST(VertexUpdate, FlattensAPlaneWithoutDrift) {
@@ -114,6 +116,32 @@ TEST(VertexUpdate, FlattensAPlaneWithoutDrift) {
     EXPECT_EQ(flat.leftCols(2), bumpy.leftCols(2)) << "no drift within the plane";
     EXPECT_LT(testing::meanAngle(flat, mesh.V, mesh.F),
               0.2 * testing::meanAngle(bumpy, mesh.V, mesh.F));
+}
+
+TEST(VertexUpdate, IsThatOfItsSweeps) {
+    const Mesh clean = testing::cube(8), noisy = testing::withGaussianNoise(clean, 0.2, 3);
+    const FaceGraph graph = faceGraph(clean.F, clean.V.rows());
+    const Points N = faceNormals(clean.V, clean.F);
+    std::vector<bool> mayMove = testing::everywhere(clean.V.rows());
+    mayMove[7] = false;
+    Vertices X = noisy.V;
+    for (int sweep = 1; sweep <= 16; ++sweep) {
+        const Vertices before = X;
+        for (Index i = 0; i < X.rows(); ++i) {
+            if (!mayMove[i]) continue;
+            const auto count = static_cast<double>(graph.faces.degree(i));
+            for (Index k = graph.faces.first[i]; k < graph.faces.first[i + 1]; ++k) {
+                const int f = graph.faces.at[k];
+                const Eigen::RowVector3d corners = before.row(graph.F(f, 0)) +
+                                                   before.row(graph.F(f, 1)) +
+                                                   before.row(graph.F(f, 2));
+                X.row(i) += N.row(f).dot(corners / 3.0 - before.row(i)) / count * N.row(f);
+            }
+        }
+        const Vertices found = followNormals(graph, noisy.V, N, mayMove, sweep);
+        EXPECT_LT((found - X).norm(), 1e-3 * (X - noisy.V).norm());
+        EXPECT_EQ(found.row(7), noisy.V.row(7));
+    }
 }
 
 }  // namespace
