@@ -70,7 +70,7 @@ class System {
             for (Index f = begin; f < end; ++f) area[f] = N.row(f).norm();
         });
         const double mean = area.mean();
-        const Eigen::VectorXd local = localAreas(graph, area);
+        const Eigen::VectorXd local = options.noise ? localAreas(graph, area) : Eigen::VectorXd();
         const double squaredScale = options.edgeScale * options.edgeScale;
         const double lengths = parallelSum(N.rows(), 0.0, [&](Index begin, Index end) {
             double sum = 0.0;
@@ -183,8 +183,6 @@ class System {
 
 Points filterNormals(const FaceGraph& graph, const Points& X, const NormalFilterOptions& options,
                      const Points& guess) {
-    // Relative residual; a hundredth of it changes no angle of a denoised mesh.
-    constexpr double kAccuracyOfNormals = 1e-2;
     Points N = areaNormals(X, graph.F);
     if (!(N.cwiseAbs().maxCoeff() > 0.0)) return N;  // all faces are degenerate
     const System A(
@@ -194,7 +192,7 @@ Points filterNormals(const FaceGraph& graph, const Points& X, const NormalFilter
     normalizeRows(N);
     const Points B = A.mass().asDiagonal() * N;
     const System::Columns tolerance =
-        kAccuracyOfNormals * kAccuracyOfNormals * B.colwise().squaredNorm().array();
+        options.accuracy * options.accuracy * B.colwise().squaredNorm().array();
     Points filtered = guess.rows() == N.rows() ? guess : N;
     A.solve(B, tolerance, filtered);
     if (options.useTwicing) {
@@ -208,8 +206,8 @@ Points filterNormals(const FaceGraph& graph, const Points& X, const NormalFilter
 
 Points normalsOfLeastVariation(const FaceGraph& graph, const Points& X, double time) {
     constexpr int kIterations = 5, kFirstBlurs = 6;
-    constexpr double kAccuracy = 1e-3;
     NormalFilterOptions options;
+    options.accuracy = 1e-3;
     options.time = time;
     options.edgeScale = 0.22;
     const Points N = areaNormals(X, graph.F);
@@ -217,7 +215,7 @@ Points normalsOfLeastVariation(const FaceGraph& graph, const Points& X, double t
     for (int k = 0; k < kIterations; ++k) {
         const System A(graph, X, N, smooth, options, true);
         const Points B = A.mass().asDiagonal() * unitNormals(N);
-        A.solve(B, kAccuracy * kAccuracy * B.colwise().squaredNorm().array(), smooth);
+        A.solve(B, options.accuracy * options.accuracy * B.colwise().squaredNorm().array(), smooth);
         normalizeRows(smooth);
     }
     return smooth;

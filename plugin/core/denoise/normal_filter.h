@@ -20,6 +20,7 @@ struct NormalFilterOptions {
     const Points* guide = nullptr;  ///< m x 3 unit normals q that define the weights; null: those
                                     ///< of X, blurred.
     double flatness = 0.0;          ///< Added to the weights where q are alike, >= 0.
+    double accuracy = 0.01;         ///< Of the equation: norm of the residual over that of M N.
 };
 
 /// The face normals of the shape X (n x 3), smoothed over the faces but not across creases:

@@ -60,15 +60,16 @@ FacesInNoise facesInNoise(const FaceGraph& graph, const RemovalOptions& options)
     FacesInNoise faces;
     faces.time.setConstant(graph.faceCount(), kLeast);
     faces.height.setZero(graph.faceCount());
+    const NoiseField& noise = options.noise;
+    Eigen::VectorXd time(noise.height.size());
+    for (Index i = 0; i < time.size(); ++i)
+        time[i] = 1.0 / (1.0 + std::pow(kHalfTimeAt * noise.edge[i] / noise.height[i], 3));
     for (Index f = 0; f < graph.faceCount(); ++f)
         for (int c = 0; c < 3; ++c) {
             const int i = graph.F(f, c);
             if (!options.mayMove[i]) continue;
-            const double height = options.noise.height[i];
-            const double weakening =
-                1.0 + std::pow(kHalfTimeAt * options.noise.edge[i] / height, 3);
-            faces.time[f] = std::max(faces.time[f], 1.0 / weakening);
-            faces.height[f] = std::max(faces.height[f], height / options.meanEdge);
+            faces.time[f] = std::max(faces.time[f], time[i]);
+            faces.height[f] = std::max(faces.height[f], noise.height[i] / options.meanEdge);
         }
     return faces;
 }
@@ -141,6 +142,7 @@ Followed flattened(const FaceGraph& graph, const Points& X0, Followed rounds,
     filter.edgeScale = 0.22;
     filter.flatness = 30.0;  // with 60, machine parts with weak noise lose
     filter.useTwicing = true;
+    filter.accuracy = 0.03;  // flat parts converge slowly, and gain nothing from less
     filter.guide = &rounds.N;
     rounds.N = filterNormals(graph, X0, filter, rounds.N);
     rounds.removal.X = followNormals(graph, X0, rounds.N, options.mayMove, kSweeps);

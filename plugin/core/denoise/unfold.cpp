@@ -1,8 +1,17 @@
 #include "core/denoise/unfold.h"
 
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <numeric>
+
 namespace spectral {
 
 namespace {
+
+void sortAndUnique(std::vector<int>& values) {
+    std::sort(values.begin(), values.end());
+    values.erase(std::unique(values.begin(), values.end()), values.end());
+}
 
 /// Tangential displacement of vertex i to the mean of the other corners of its faces.
 Eigen::RowVector3d displacementToMean(const FaceGraph& graph, const Points& N, const Points& X,
@@ -25,23 +34,28 @@ void unfoldFaces(const FaceGraph& graph, const Points& N, const Eigen::VectorXd&
                  const std::vector<bool>& mayMove, Points& X) {
     constexpr int kMaxRepetitions = 20;
     constexpr double kMinCosine = 0.5;  // between a face's normal and its filtered normal
+    std::vector<int> faces(static_cast<std::size_t>(graph.faceCount()));
+    std::iota(faces.begin(), faces.end(), 0);
     for (int repetition = 0; repetition < kMaxRepetitions; ++repetition) {
-        const Points now = areaNormals(X, graph.F);
-        std::vector<bool> isFolded(mayMove.size(), false);
-        bool isAny = false;
-        for (Index f = 0; f < graph.faceCount(); ++f) {
-            if (now.row(f).dot(N.row(f)) >= kMinCosine * now.row(f).norm()) continue;
-            for (int c = 0; c < 3; ++c)
-                if (mayMove[graph.F(f, c)]) isAny = isFolded[graph.F(f, c)] = true;
+        std::vector<int> corners;
+        for (const int f : faces) {
+            const Eigen::RowVector3d a = X.row(graph.F(f, 0)), b = X.row(graph.F(f, 1)),
+                                     c = X.row(graph.F(f, 2)), now = (b - a).cross(c - a);
+            if (now.dot(N.row(f)) >= kMinCosine * now.norm()) continue;
+            for (const int i : graph.F.row(f))
+                if (mayMove[i]) corners.push_back(i);
         }
-        if (!isAny) return;
-        Points moved = X;
-        for (Index i = 0; i < graph.vertexCount(); ++i) {
-            if (!isFolded[i]) continue;
-            const Eigen::RowVector3d displacement = displacementToMean(graph, N, X, i);
-            if (displacement.norm() <= maxDisplacement[i]) moved.row(i) += displacement;
+        sortAndUnique(corners);
+        std::vector<Eigen::RowVector3d> displacements;
+        for (const int i : corners) displacements.push_back(displacementToMean(graph, N, X, i));
+        faces.clear();  // of the corners: only there can anything have changed
+        for (std::size_t k = 0; k < corners.size(); ++k) {
+            const int i = corners[k];
+            if (displacements[k].norm() <= maxDisplacement[i]) X.row(i) += displacements[k];
+            for (Index j = graph.faces.first[i]; j < graph.faces.first[i + 1]; ++j)
+                faces.push_back(graph.faces.at[j]);
         }
-        X = moved;
+        sortAndUnique(faces);
     }
 }
 
