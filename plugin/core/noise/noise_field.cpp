@@ -117,10 +117,8 @@ Heights heightsOf(const FaceGraph& graph, const Points& X, const Points& N, cons
     };
     Heights heights;
     const Octaves far = wide.deviation(octaves);
-    const Octaves middle = LocalAverage(graph.vertices, isMeasured, kMiddle).deviation(octaves);
     heights.shape = explained(far);
     heights.wide = (far.col(0).array().square() - heights.shape.array().square()).max(0.0).sqrt();
-    heights.shape = heights.shape.cwiseMin(explained(middle));
     heights.fine = LocalAverage(graph.vertices, isMeasured, kNarrow)
                        .deviation(Eigen::VectorXd(octaves.col(0)));
     return heights;
@@ -146,13 +144,7 @@ Eigen::VectorXd heightWhereNoise(const VertexGraph& graph, const Heights& height
     const Eigen::VectorXd around = largestWithin(graph, kRingsOfNoise, height);
     const Eigen::ArrayXd least =
         (kMinRatioNear * around.array()).max(kMinRatio * wide.array()).max(kMinHeight);
-    height = (height.array() < least).select(0.0, height);
-    Flags isHigh(isNoise);
-    for (Index i = 0; i < height.size(); ++i) isHigh[i] = height[i] > 0.0;
-    const Flags isConnected = connectedTo(isNoise, isHigh, graph);  // single specks are not
-    for (Index i = 0; i < height.size(); ++i)
-        if (!isConnected[i]) height[i] = 0.0;
-    return height;
+    return (height.array() < least).select(0.0, height);
 }
 
 /// The field with the statistics of its heights, which are those in edges of the place.
