@@ -24,29 +24,21 @@ struct FoundSpikes {
     bool areTail = false;  ///< Not isolated spikes but the heavy tail of the noise itself.
 };
 
-/// Least share of the vertices that statistics can tell to be spikes.
-constexpr double kMinShareOfSpikes = 0.01;
-
-/// Least tail of the residuals (localTail) with spikes: 4 on pierrot_i3, 2.5 for noise of any
-/// distribution over the surface.
-constexpr double kMinTailOfSpikes = 3.0;
-
 FoundSpikes sparseSpikes(const FaceGraph& graph, const Points& X, const std::vector<bool>& mayMove,
                          double meanEdge) {
     constexpr double kDetectionLimit = 4.0, kRemovalLimit = 3.0;  // deviations
     constexpr Index kMinCount = 50;
     constexpr double kMinShareOfTail = 0.004;
+    constexpr double kMinShareOfSpikes = 0.01;  // fewer are told by their own heights
+    // Of the residuals (localTail): 4 on pierrot_i3, 2.5 for noise of any distribution over the
+    // surface.
+    constexpr double kMinTailOfSpikes = 3.0;
     Spikes spikes = findSpikes(graph, X, mayMove, kDetectionLimit, meanEdge);
     if (spikes.share() >= kMinShareOfSpikes &&
         localTail(graph.vertices, localResiduals(graph, X, mayMove), mayMove) > kMinTailOfSpikes)
         return {findSpikes(graph, X, mayMove, kRemovalLimit, meanEdge)};
     const bool areTail = spikes.count >= kMinCount && spikes.share() >= kMinShareOfTail;
     return {certainSpikes(graph, X, std::move(spikes), meanEdge), areTail};
-}
-
-bool hasManySpikes(const Diagnosis& diagnosis) {
-    return static_cast<double>(diagnosis.spikes) >=
-           kMinShareOfSpikes * static_cast<double>(diagnosis.X.rows());
 }
 
 /// Fraction of the progress for the mesh as one, before its places.
@@ -249,14 +241,13 @@ Diagnosis diagnoseWhole(const FaceGraph& graph, const Points& X,
     const Points N = smoothVertexNormals(graph, diagnosis.X);
     const double correlation = residualCorrelation(graph, diagnosis.X, N, isMeasured);
     const SecondResiduals second = secondResiduals(graph, diagnosis.X, N, isMeasured);
-    const bool isShape = correlation >= kMaxCorrelationOfNoise;
     const bool isOther =
         !second.isNoise(correlation, edge) &&
         isOtherNoise(graph, diagnosis.X, N, isMeasured, correlation, second.correlation);
     const bool isWhite = isOther || second.isNoise(correlation, edge);
     NoiseEstimate& noise = diagnosis.noise;
     diagnosis.kind = NoiseKind::Shape;
-    const bool isRising = !isWhite && isShape;
+    const bool isRising = !isWhite && correlation >= kMaxCorrelationOfNoise;
     if (isKnown || !isRising)
         noise =
             estimateNoise(graph, diagnosis.X, N, isMeasured, correlation, second, isOther, edge);
@@ -271,12 +262,9 @@ Diagnosis diagnoseWhole(const FaceGraph& graph, const Points& X,
         if (share * noise.height >= kMinCorrelated * edge) diagnosis.kind = NoiseKind::Correlated;
         return diagnosis;
     }
-    if (!isWhite && !noise.isUnderShape && noise.height < kHighNoise * edge &&
-        !hasManySpikes(diagnosis))
-        return diagnosis;
+    if (!isWhite && !noise.isUnderShape && noise.height < kHighNoise * edge) return diagnosis;
     if (!noise.isUnderShape) noise.height *= share;
-    // The steps of voxels are flat, too, but do not alternate.
-    if (isWhite || correlation < 0.0) addFlatParts(graph, X, diagnosis.isClean);
+    addFlatParts(graph, X, diagnosis.isClean);
     diagnosis.kind = noise.height < kMinHeight * edge ? NoiseKind::None
                      : found.areTail                  ? NoiseKind::Impulses
                                                       : NoiseKind::White;
@@ -291,17 +279,11 @@ NoiseField localNoise(const FaceGraph& graph, const std::vector<bool>& isMeasure
     if (!isWhite && !isCorrelated && whole.kind != NoiseKind::None &&
         whole.kind != NoiseKind::Shape)
         return {};
-    if (hasManySpikes(whole) || whole.noise.isShape) return {};
+    if (whole.noise.isShape) return {};
     const std::vector<bool> isMeasured = inLargeComponents(graph, isMeasuredInWhole);
     const LocalResiduals residuals = localResiduals(graph, whole.X, isMeasured);
     if ((isWhite || isCorrelated) && areAlike(graph, whole.X, residuals, isMeasured)) return {};
-    NoiseField field = measureNoiseField(graph, whole.X, isMeasured, residuals);
-    if (!field.isAny()) return {};
-    std::vector<bool> isNoisy(isMeasured);
-    for (Index i = 0; i < field.height.size(); ++i)
-        isNoisy[i] = isNoisy[i] && field.height[i] > 0.0;
-    if (localTail(graph.vertices, residuals, isNoisy) > kMinTailOfSpikes) return {};
-    return field;
+    return measureNoiseField(graph, whole.X, isMeasured, residuals);
 }
 
 }  // namespace

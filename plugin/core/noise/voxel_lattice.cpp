@@ -163,7 +163,6 @@ std::vector<Eigen::Matrix3d> latticeAxes(const FaceGraph& graph, const Points& X
     constexpr double kSame = 1.0 - 1e-6;  // cosine
     constexpr double kOrthogonal = 1e-3;
     constexpr std::size_t kMaxDirections = 24;
-    constexpr double kMinCovered = 0.75;  // of the faces, by the commonest directions
     const Points N = areaNormals(X, graph.F);
     // The same faces in the same order, whatever the numbering.
     const std::vector<std::uint64_t> bits = randomBits(X);
@@ -201,9 +200,6 @@ std::vector<Eigen::Matrix3d> latticeAxes(const FaceGraph& graph, const Points& X
         return counts[a] != counts[b] ? counts[a] > counts[b] : a < b;
     });
     order.resize(std::min(order.size(), kMaxDirections));
-    Index covered = 0;
-    for (const std::size_t k : order) covered += counts[k];
-    if (static_cast<double>(covered) < kMinCovered * static_cast<double>(samples)) return {};
     std::vector<Eigen::Matrix3d> found;
     const auto at = [&](std::size_t k) { return Eigen::Vector3d(sums[order[k]].normalized()); };
     const auto areOrthogonal = [&](std::size_t a, std::size_t b) {
