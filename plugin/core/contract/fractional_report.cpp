@@ -269,7 +269,8 @@ Warnings fractionalWarnings(const FilterOptions& options, const FilterResult& re
             ", or fewer steps; if triangles are needles, {apply 'Remeshing: Isotropic Explicit "
             "Remeshing'|remesh} first";
     }
-    if (!result.toleranceReached && !shrinks) warnings.push_back(toleranceWarning(options, result));
+    if (!result.toleranceReached && result.accuracyReached && !shrinks)
+        warnings.push_back(toleranceWarning(options, result));
     if (!result.cutoffReached) warnings.push_back(cutoffWarning(result, lastFrequency(result)));
     append(residualWarnings(result.residuals), warnings);
     return warnings;

@@ -254,9 +254,9 @@ FilterResult fractionalFilter(const VerticesView& V, const FacesView& F, const F
     if (steps.passes > 0) result.stepError = std::hypot(steps.error, evaluated);
     result.singularPart = steps.singularPart;
     result.thinPartFactor = steps.thinPartFactor;
-    result.toleranceReached =
-        steps.passes == 0 || options.passes > 0 ||
-        (steps.error <= options.tolerance && steps.singularPart <= kNegligibleArea);
+    result.toleranceReached = steps.passes == 0 || options.passes > 0 ||
+                              (std::max(steps.error, evaluated) <= options.tolerance &&
+                               steps.singularPart <= kNegligibleArea);
     result.cutoffFrequency = transfer.cutoff();
     result.featureSize = options.featureSize;
     const Vertices X = surface.X + displacement;

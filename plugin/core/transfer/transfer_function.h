@@ -31,7 +31,8 @@ struct TransferFunctionOptions {
 ///   high-pass  the low-pass at 1/x;
 ///   band-pass  Gaussian 2^(-(2 log2(x)/b)^2/2), Butterworth 1/sqrt(1 + ((x - 1/x)/q)^2m) with
 ///              q = 2^(b/2) - 2^(-b/2), ideal 1 inside |log2 x| <= b/2;
-///   band-stop  1 minus the band-pass.
+///   band-stop  1 minus the band-pass; in fractional powers, unless ideal, F is at least 1 % of
+///              passGain: those of a zero have a cusp, which no few steps or solves follow.
 /// A custom F is custom(omega)^power, with omega clamped to sixteen octaves on either side of
 /// omega_c. F is finite and >= 0 everywhere, so that every fractional power of it exists.
 class TransferFunction {

@@ -10,6 +10,7 @@
 #include "core/mesh/measures.h"
 #include "core/mesh/mesh.h"
 #include "core/support/errors.h"
+#include "core/support/frequency.h"
 #include "core/support/progress.h"
 #include "core/support/types.h"
 #include "core/transfer/transfer_function.h"
@@ -111,16 +112,19 @@ TEST(FractionalFilter, TellsAutomaticStepsFromThoseOfThePaper) {
 }
 
 TEST(FractionalFilter, ReportsThatTheAccuracyIsNotReached) {
-    // The tenth root of a gain that vanishes inside the spectrum has a cusp there.
+    // The tenth root of a gain that vanishes inside the spectrum has a cusp there; a band-stop has
+    // 1 % left.
     const Mesh mesh = testing::withNoise(testing::icosphere(4), 0.02, 5);
     FilterOptions options = smoothing(mesh, 10, BasisUpdate::Conformal);
-    options.transferFunction.type = FilterType::BandStop;
     options.featureSize = 0.5;  // where the noise is
+    const double cutoff = cutoffFrequency(options.featureSize);
+    options.transferFunction.type = FilterType::Custom;
+    options.transferFunction.custom = [=](double omega) { return std::abs(omega / cutoff - 1.0); };
     const FilterResult cusp = fractionalFilter(mesh.V, mesh.F, options);
     EXPECT_FALSE(cusp.accuracyReached);
     EXPECT_GT(cusp.errorEstimate, options.evaluation.accuracy);
 
-    options.transferFunction.stopGain = 0.05;
+    options.transferFunction.type = FilterType::BandStop;
     const FilterResult smooth = fractionalFilter(mesh.V, mesh.F, options);
     EXPECT_TRUE(smooth.accuracyReached);
 }

@@ -52,7 +52,7 @@ TEST(TransferFunction, SmoothResponsesHaveNoDiscontinuity) {
 
 TEST(TransferFunction, APartialFilterIsAPowerOfTheWhole) {
     for (const FilterType type : {FilterType::LowPass, FilterType::BandPass, FilterType::BandStop})
-        for (const double stop : {0.0, 0.4}) {
+        for (const double stop : {type == FilterType::BandStop ? 0.025 : 0.0, 0.4}) {
             TransferFunctionOptions o = options(type, Response::Gaussian);
             o.passGain = 2.5;
             o.stopGain = stop;
@@ -65,6 +65,19 @@ TEST(TransferFunction, APartialFilterIsAPowerOfTheWhole) {
                 EXPECT_EQ(part.whole()(omega), whole(omega));
             }
         }
+}
+
+TEST(TransferFunction, FractionalPowersOfABandStopHaveNoZero) {
+    for (const Response response : {Response::Gaussian, Response::Butterworth}) {
+        TransferFunctionOptions o = options(FilterType::BandStop, response);
+        o.passGain = 2.0;
+        const TransferFunction zero(o, 1.0);
+        EXPECT_EQ(zero(1.0), 0.0);
+        EXPECT_NEAR(zero.power(1.0, 0.1), std::pow(0.02, 0.1), 1e-14);
+        EXPECT_NEAR(zero.power(30.0, 0.1), std::pow(zero(30.0), 0.1), 1e-4);
+    }
+    const TransferFunction ideal(options(FilterType::BandStop, Response::Ideal), 1.0);
+    EXPECT_EQ(ideal.power(1.0, 0.1), 0.0);
 }
 
 TEST(TransferFunction, FractionalPowersSurviveWhereTheGainUnderflows) {

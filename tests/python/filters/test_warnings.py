@@ -25,7 +25,7 @@ from shared_types import Decimated
 
 TRIANGLE = np.array([[0.0, 0, 0], [1, 0, 0], [0, 1, 0]]), np.array([[0, 1, 2]])
 # Each falls short in a different way.
-INACCURATE = {"filter_type": "band-stop", "pass_gain": 1.0, "stop_gain": 0.0, "steps": 20}
+INACCURATE = {"filter_type": "custom", "transfer_function": "abs(w - 1)", "steps": 20}
 FEW_HARMONICS = {"spectrum": "truncated", "basis_size": 30, "steps": 1}
 EVERYTHING_FIXED = {"boundary": "fixed", "steps": 1}
 
@@ -98,7 +98,7 @@ def test_every_flag_of_a_shortfall_comes_with_a_warning(decimated: Decimated) ->
     assert whole["warnings"] == []
     _, inaccurate = filter_mesh(V, F, **INACCURATE)
     assert not inaccurate["accuracy_reached"]
-    assert "stop_gain" in inaccurate["warnings"][0]
+    assert "Choose gains closer to 1" in inaccurate["warnings"][0]
     _, few = filter_mesh(V, F, **FEW_HARMONICS)
     assert not few["cutoff_reached"]
     assert "basis_size" in few["warnings"][0]
