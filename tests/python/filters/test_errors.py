@@ -82,7 +82,8 @@ def test_no_mesh_at_all_is_refused() -> None:
 @pytest.mark.parametrize("name", FILTERS.values())
 def test_a_point_cloud_is_refused_with_a_way_to_a_surface(name: str, decimated: Decimated) -> None:
     V, _ = decimated("cow.obj")
-    mesh_set = mesh_set_of(V, v_scalar_array=V[:, 0], v_color_matrix=np.full((len(V), 4), 0.5))
+    data = {"v_scalar_array": V[:, 0], "v_color_matrix": np.full((len(V), 4), 0.5)}
+    mesh_set = mesh_set_of(V, np.zeros((0, 3), np.int32), **data)
     before = snapshot(mesh_set.current_mesh())
     message = refusal(mesh_set, name)
     assert "point cloud" in message
