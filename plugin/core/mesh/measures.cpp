@@ -199,16 +199,19 @@ double surfaceArea(const Vertices& V, const Faces& F) {
 double signedVolume(const Vertices& V, const Faces& F) {
     // Tetrahedra with their apex at a distant origin would suffer from cancellation.
     const Eigen::RowVector3d o = 0.5 * (V.colwise().maxCoeff() + V.colwise().minCoeff());
-    const double sixfoldVolume = parallelSum(F.rows(), 0.0, [&](Index begin, Index end) {
-        double sum = 0.0;
+    constexpr double kRoundOff = 1e-12;
+    const Eigen::Vector2d zero = Eigen::Vector2d::Zero();  // sixfold volumes, and their moduli
+    const Eigen::Vector2d sum = parallelSum(F.rows(), zero, [&](Index begin, Index end) {
+        Eigen::Vector2d part = Eigen::Vector2d::Zero();
         for (Index t = begin; t < end; ++t) {
             const Eigen::RowVector3d a = V.row(F(t, 0)) - o, b = V.row(F(t, 1)) - o,
                                      c = V.row(F(t, 2)) - o;
-            sum += a.dot(b.cross(c));
+            const double volume = a.dot(b.cross(c));
+            part += Eigen::Vector2d(volume, std::abs(volume));
         }
-        return sum;
+        return part;
     });
-    return sixfoldVolume / 6.0;
+    return std::abs(sum[0]) > kRoundOff * sum[1] ? sum[0] / 6.0 : 0.0;
 }
 
 bool enclosesVolume(const Vertices& V, const Faces& F) {

@@ -61,7 +61,7 @@ inline double defaultTolerance(const MeshLengths& mesh) { return 0.0005 * mesh.s
 double surfaceArea(const Vertices& V, const Faces& F);
 
 /// Signed volume by the divergence theorem, positive for outward orientation. For an open surface,
-/// that of its cone over the centre of the bounding box.
+/// that of its cone over the centre of the bounding box. 0 if parts cancel up to round-off.
 /// @param V  n x 3, n >= 1.
 double signedVolume(const Vertices& V, const Faces& F);
 

@@ -37,6 +37,16 @@ TEST(MeshLengths, TellVerticesOfTrianglesFromOthers) {
     EXPECT_EQ(lengthsOf(Vertices(0, 3), Faces(0, 3)).diagonal, 0.0);
 }
 
+TEST(SignedVolume, IsZeroWherePartsCancel) {
+    const Mesh ball = testing::icosphere(3);
+    Mesh insideOut = ball;
+    insideOut.V.rowwise() += Eigen::RowVector3d(3.1, 1.7, 2.3);
+    insideOut.F.col(1).swap(insideOut.F.col(2));
+    const Mesh both = testing::joined(ball, insideOut);
+    EXPECT_GT(signedVolume(ball.V, ball.F), 4.0);
+    EXPECT_EQ(signedVolume(both.V, both.F), 0.0);  // not -2e-15
+}
+
 TEST(EnclosesVolume, IsTrueForClosedSurfacesEvenFarFromTheOrigin) {
     testing::Mesh mesh = testing::torus(2, 0.7, 24, 12);
     EXPECT_TRUE(enclosesVolume(mesh.V, mesh.F));

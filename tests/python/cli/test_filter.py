@@ -16,6 +16,7 @@ from meshlab_spectral import FilterOptions, OptionError, filter_mesh
 from meshlab_spectral.files.region import Region
 from meshlab_spectral.files.region_vertices import chosen_parts
 from meshlab_spectral.formats.document import Part
+from shapes import sphere
 from shared_types import Decimated
 
 
@@ -91,6 +92,16 @@ def test_an_open_surface_has_no_volume_in_the_table(decimated: Decimated, tmp_pa
     done = command("filter", tmp_path / "half.ply", tmp_path / "smooth.ply", "--steps", 1)
     assert "Area" in done.stdout
     assert "Volume" not in done.stdout
+
+
+def test_volumes_that_cancel_are_zero_not_shares_of_round_off(tmp_path: Path) -> None:
+    V, F = sphere(2)
+    V = np.add(V, (4, 0, 0)).astype(np.float32).astype(float)
+    mirrored = V * (-1, 1, 1)  # inside out
+    both = mesh_set_of(np.vstack([V, mirrored]), np.vstack([F, F + len(V)]))
+    both.save_current_mesh(str(tmp_path / "mirrored.ply"))
+    done = succeeded("filter", tmp_path / "mirrored.ply", tmp_path / "out.ply", "--steps", 1)
+    assert re.search(r"Volume\W+0 -> 0 +│", done.stdout)
 
 
 def test_a_vertex_that_is_not_a_number_is_named(existing: Path, tmp_path: Path) -> None:
