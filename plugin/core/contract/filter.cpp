@@ -15,10 +15,15 @@ namespace spectral {
 namespace {
 
 /// Throws an error of the same class again, with advice.
+/// @param mesh  what percentages refer to, if it has been measured: filters that are too strong
+///              often come from there.
 [[noreturn]] void throwAdvised(const Error& error, const Filter& filter, const Values& given,
-                               const Words& words) {
+                               const MeshLengths& mesh, const Words& words) {
     const std::string help = inWords(advice(error, filter, given), filter, words);
-    const std::string text = help.empty() ? error.what() : error.what() + (": " + help);
+    std::string text = help.empty() ? error.what() : error.what() + (": " + help);
+    if (dynamic_cast<const SolverFailure*>(&error) != nullptr)
+        for (const Warning& warning : percentageWarnings(mesh))
+            text += ". " + inWords(warning.text, filter, words);
     if (dynamic_cast<const Cancelled*>(&error) != nullptr) throw Cancelled();
     if (dynamic_cast<const InvalidMesh*>(&error) != nullptr)
         throw InvalidMesh(error.code(), text, error.limit());
@@ -43,12 +48,12 @@ void warnOfSelection(const FilterInput& input, const Values& given, FilterOutput
 template <class Work>
 FilterOutput advised(const Filter& filter, const FilterInput& input, const Values& given,
                      const Progress& progress, int threads, const Work& work) {
+    MeshLengths lengths;
     try {
         FilterOutput output = withSteadyProgress(progress, [&](const Progress& steady) {
             const ThreadTeam team(threads > 0 ? threads : threadCount(), steady);
             checkMesh(input.V, input.F);  // before it is measured
-            const MeshLengths lengths =
-                input.whole ? input.whole->lengths : lengthsOf(input.V, input.F);
+            lengths = input.whole ? input.whole->lengths : lengthsOf(input.V, input.F);
             return work(lengths, steady);
         });
         warnOfSelection(input, given, output);
@@ -60,7 +65,7 @@ FilterOutput advised(const Filter& filter, const FilterInput& input, const Value
         for (FilterOutput& column : output.columns) translate(column);
         return output;
     } catch (const Error& error) {
-        throwAdvised(error, filter, given, input.words);
+        throwAdvised(error, filter, given, lengths, input.words);
     }
 }
 

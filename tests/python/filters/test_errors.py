@@ -19,6 +19,7 @@ from meshlab_spectral import (
     manifold_harmonics,
 )
 from meshlab_spectral.plugin.loading import FILTERS
+from shapes import sphere
 from shared_types import Decimated
 
 DENOISE, ARTEFACTS = FILTERS["Spectral Denoise"], FILTERS["Spectral Artefacts"]
@@ -195,6 +196,13 @@ def test_parts_that_would_shrink_to_nothing_are_refused_with_advice() -> None:
     message = refusal(mesh_set_of(V, np.arange(9).reshape(3, 3)), feature_size=percent(100))
     assert "shrinks to nothing" in message
     assert "choose a smaller feature_size" in message
+
+
+def test_what_enlarges_percentages_is_told_where_the_filter_is_too_strong_by_it() -> None:
+    V, F = sphere(2)
+    message = refusal(mesh_set_of(np.vstack([V, [100, 100, 100]]), F), feature_size=percent(20))
+    assert "shrinks to nothing" in message
+    assert "1 vertex without faces enlarges the diagonal" in message
 
 
 def test_too_large_a_gain_is_refused_as_too_steep(decimated: Decimated) -> None:
