@@ -168,7 +168,6 @@ void checkDenoise(const Case& of, const DenoiseOptions& options, const DenoiseRe
     });
     checkUnmoved(V, result.V, mustStay, failures);
     if (result.diagnosis.spikes > 0 || result.diagnosis.kind == NoiseKind::Voxels ||
-        result.diagnosis.kind == NoiseKind::VoxelFaces ||
         result.diagnosis.kind == NoiseKind::Impulses)
         return;
     // Preserving volumes may add an offset of twice that size.

@@ -138,7 +138,8 @@ std::string removedText(const DenoiseOptions& options, const DenoiseResult& resu
         if (result.noiseSize > 0.0) text += ", size " + inEdges(result.noiseSize, edge);
         return text + ", as given: " + removed;
     }
-    if (diagnosis.hasVoxels()) return noiseText(diagnosis) + ": smoothed within half a voxel";
+    if (diagnosis.kind == NoiseKind::Voxels)
+        return noiseText(diagnosis) + ": smoothed within half a voxel";
     const bool isInPlaces = diagnosis.kind == NoiseKind::Local && !diagnosis.field.isEverywhere();
     return noiseText(diagnosis) + ": " + removed +
            (isInPlaces ? "; no noise found in the rest" : "");

@@ -97,8 +97,7 @@ std::string kindText(NoiseKind kind) {
         case NoiseKind::Tessellation: return "tessellation";
         case NoiseKind::Stretched: return "stretched";
         case NoiseKind::TooFew: return "too_few";
-        case NoiseKind::Voxels:
-        case NoiseKind::VoxelFaces: return "voxels";
+        case NoiseKind::Voxels: return "voxels";
         case NoiseKind::Rounded: return "rounded";
         case NoiseKind::White: return "white";
         case NoiseKind::Impulses: return "impulses";
@@ -115,7 +114,7 @@ std::string inEdges(double length, double edge) {
 
 std::string noiseText(const Diagnosis& diagnosis) {
     if (!diagnosis.isNoise()) return nothingText(diagnosis);
-    if (diagnosis.hasVoxels()) return voxelsText(diagnosis.voxel);
+    if (diagnosis.kind == NoiseKind::Voxels) return voxelsText(diagnosis.voxel);
     if (diagnosis.kind == NoiseKind::Local) return localText(diagnosis.field);
     return namedText(diagnosis);
 }

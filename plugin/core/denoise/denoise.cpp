@@ -126,13 +126,9 @@ RemovalOptions removalOptions(const DenoiseOptions& options, const Diagnosis& di
 
 Removal removeAsDiagnosed(const FaceGraph& graph, const Points& X, const Diagnosis& diagnosis,
                           bool isKnown, const RemovalOptions& removal, const Progress& progress) {
-    constexpr double kLengthOfCentres = 1.5, kLengthOfFaces = 2.0;  // voxels
-    if (diagnosis.hasVoxels())
-        return removeVoxelSteps(
-            graph, X, diagnosis.voxel, diagnosis.voxelAxes,
-            diagnosis.voxelEdges *
-                (diagnosis.kind == NoiseKind::VoxelFaces ? kLengthOfFaces : kLengthOfCentres),
-            removal, progress);
+    if (diagnosis.kind == NoiseKind::Voxels)
+        return removeVoxelSteps(graph, X, diagnosis.voxel, diagnosis.voxelAxes,
+                                diagnosis.stepLength, removal, progress);
     if (!(removal.noise.height.maxCoeff() > 0.0) || !(isKnown || diagnosis.isNoise()))
         return {diagnosis.X, 0};
     return removeNoise(graph, diagnosis.X, removal, progress);
@@ -171,7 +167,8 @@ Points denoisePart(const MovingPart& part, const FaceGraph& graph, const Denoise
     removal.mayMove = std::move(mayMove);
     for (Index i = 0; i < diagnosis.field.height.size(); ++i)
         removal.mayMove[i] = removal.mayMove[i] && diagnosis.field.height[i] > 0.0;
-    if (diagnosis.isNoise() && !diagnosis.hasVoxels() && !isKnown && options.keepCreases)
+    if (diagnosis.isNoise() && diagnosis.kind != NoiseKind::Voxels && !isKnown &&
+        options.keepCreases)
         removal.rays =
             scanRays(part.eye, graph, X0, isMeasured, diagnosis.kind == NoiseKind::Correlated);
     // Depths of pixels have few values, so that flat parts are noisy, too.
@@ -180,14 +177,14 @@ Points denoisePart(const MovingPart& part, const FaceGraph& graph, const Denoise
     Removal done =
         removeAsDiagnosed(graph, X0, diagnosis, isKnown, removal, progress.part(kMeasuring, 1.0));
     // Along rays nothing can fold: the camera sees the same triangles.
-    if (done.rounds > 0 && !diagnosis.hasVoxels() && removal.rays.direction.rows() == 0 &&
-        isCrumpled(graph, X0, done.X)) {
+    if (done.rounds > 0 && diagnosis.kind != NoiseKind::Voxels &&
+        removal.rays.direction.rows() == 0 && isCrumpled(graph, X0, done.X)) {
         result.isCrumpled = true;
         done = {diagnosis.X, 0};
     }
     result.rounds = done.rounds;
     const double strength = std::min(options.strength, 1.0);
-    if (done.rounds > 0 && !diagnosis.hasVoxels()) {
+    if (done.rounds > 0 && diagnosis.kind != NoiseKind::Voxels) {
         result.noiseHeight =
             strength * std::min(heightToRemove(options, diagnosis), removal.meanEdge);
         result.noiseSize = removal.size * removal.meanEdge;
@@ -280,7 +277,7 @@ DenoiseResult denoise(const Vertices& V, const Faces& F, const DenoiseOptions& o
             volumes =
                 preserveVolumes(whole.X, isWhole ? graph.F : whole.F, components,
                                 offsetWeight(weight, part, result.diagnosis), kMaxOffset, moved);
-        if (result.diagnosis.hasVoxels())
+        if (result.diagnosis.kind == NoiseKind::Voxels)
             keepWithin(0.5 * result.diagnosis.voxel, result.diagnosis.voxelAxes, whole.X, moved);
     }
     Vertices displacement = moved - whole.X;

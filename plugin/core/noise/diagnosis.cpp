@@ -58,11 +58,12 @@ constexpr double kMinVoxel = 0.3, kMinRounding = 0.04;
 
 /// Notes voxels if the vertices are those of the surface of a binary volume.
 bool noteLattice(const SortedPoints& X, bool areAllOn, Diagnosis& diagnosis) {
+    constexpr double kLength = 1.5;  // voxels
     const auto lattice = voxelLattice(X, areAllOn);
     if (!lattice) return false;
     diagnosis.kind = NoiseKind::Voxels;
     diagnosis.voxel = lattice->voxel;
-    diagnosis.voxelEdges = lattice->edges;
+    diagnosis.stepLength = kLength * lattice->edges;
     return true;
 }
 
@@ -71,13 +72,15 @@ void findVoxelFaces(const FaceGraph& graph, const CoordinateGrid& grid,
                     const std::vector<bool>& isMeasured, Diagnosis& diagnosis) {
     // Of weighted residuals, mean edges: designed shapes are flat.
     constexpr double kMinDeviationOfFaces = 0.01;
+    constexpr double kLength = 2.0;  // voxels
     const double edge = diagnosis.noise.meanEdge;
     if (grid.step.minCoeff() < kMinVoxel * edge) return;
     if (!(weightedResiduals(graph, diagnosis.X, isMeasured).deviation >
           kMinDeviationOfFaces * edge))
         return;
-    diagnosis.kind = NoiseKind::VoxelFaces;
+    diagnosis.kind = NoiseKind::Voxels;
     diagnosis.voxel = grid.step;
+    diagnosis.stepLength = kLength;
 }
 
 /// Notes voxels of a volume that may be turned, and where only most of the vertices may be of it.
@@ -303,10 +306,6 @@ double Diagnosis::rmsHeight() const {
     if (!isNoise()) return 0.0;
     if (kind != NoiseKind::Local) return noise.height;
     return field.height.norm() / std::sqrt(static_cast<double>(field.height.size()));
-}
-
-bool Diagnosis::hasVoxels() const {
-    return kind == NoiseKind::Voxels || kind == NoiseKind::VoxelFaces;
 }
 
 Diagnosis diagnose(const FaceGraph& graph, const Points& X, const std::vector<bool>& isMeasured,

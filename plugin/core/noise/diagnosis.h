@@ -18,8 +18,7 @@ enum class NoiseKind {
     Tessellation,  ///< Needle triangles between the edges of a CAD part: nothing can be measured.
     Stretched,     ///< Needle triangles, since one axis has another unit (stretchedAxis).
     TooFew,        ///< Too few vertices to tell noise from corners.
-    Voxels,        ///< Staircase of the surface of a binary volume.
-    VoxelFaces,    ///< Surface of voxels that consists of their faces.
+    Voxels,        ///< Staircase of the surface of a binary volume, or the faces of its voxels.
     Rounded,       ///< Coordinates were rounded to a grid.
     White,         ///< Independent at every vertex.
     Impulses,      ///< Independent, with large values at many vertices.
@@ -37,11 +36,10 @@ struct Diagnosis {
     Index spikes = 0;           ///< Number of vertices that are spikes.
     std::optional<int> stretchedAxis;  ///< That of another unit than the others.
     Eigen::RowVector3d voxel = Eigen::RowVector3d::Zero();  ///< Voxel size along each axis.
-    double voxelEdges = 1.0;  ///< Cells of the mesh along a voxel: more where it is finer.
+    double stepLength = 0.0;  ///< Along the surface, of the voxels' steps, in cells of the mesh.
     Eigen::Matrix3d voxelAxes = Eigen::Matrix3d::Identity();  ///< Unit axes of the voxels, as rows.
 
-    bool isNoise() const;    ///< Whether its kind is one of noise.
-    bool hasVoxels() const;  ///< Whether it is the staircase of a volume.
+    bool isNoise() const;  ///< Whether its kind is one of noise.
 
     /// Root mean square height of the noise over all vertices, length units; 0 without noise.
     double rmsHeight() const;

@@ -193,7 +193,7 @@ TEST(CoordinateGrid, CoordinatesRoundedToAGridAreNoiseOfKnownHeight) {
 TEST(CoordinateGrid, FacesOfVoxelsAreToldFromDesignedShapes) {
     const Mesh blocks = testing::voxelFaces(10, {1.0, 1.0, 3.0});
     const Diagnosis found = diagnosed(blocks);
-    EXPECT_EQ(found.kind, NoiseKind::VoxelFaces);
+    EXPECT_EQ(found.kind, NoiseKind::Voxels);
     EXPECT_LT((found.voxel - Eigen::RowVector3d(1.0, 1.0, 3.0)).norm(), 1e-9);
     for (const int cells : {8, 13, 20}) {
         const NoiseKind kind = diagnosed(testing::cube(cells)).kind;
