@@ -218,7 +218,7 @@ std::optional<int> octaveOfCrests(const Octaves& height) {
     constexpr double kMinRise = 1.25, kMaxEnd = 0.8;
     int crest = 0;
     const double highest = height.maxCoeff(&crest);
-    if (highest < kMinRise * height[0] || height[kOctaves - 1] > kMaxEnd * highest)
+    if (crest < 2 || highest < kMinRise * height[0] || height[kOctaves - 1] > kMaxEnd * highest)
         return std::nullopt;
     return crest;
 }
@@ -384,7 +384,7 @@ NoiseEstimate estimateNoise(const FaceGraph& graph, const Points& X, const Point
     // with reliefs of four edges, to .76 with impulses, .9 and more with other noise.
     // Without noise it falls to .39 and less, with noise of .2 edges to .51 and more.
     constexpr double kMinOfNoise = 0.7, kMaxOfRelief = 0.5;
-    const double lowest = height.minCoeff();
+    const double lowest = crests ? height.minCoeff() : height.head<kWhiteOctaves>().minCoeff();
     const bool isShort = lowest < kMinOfNoise * height[0];
     const bool isRelief =
         isShort || (crests && areCrestsAlike(graph.vertices, octaves, *crests, height[*crests],
@@ -402,12 +402,13 @@ NoiseEstimate estimateNoise(const FaceGraph& graph, const Points& X, const Point
         estimate.isEven = isOther && !estimate.isUnderShape && noise[1] > estimate.height;
         if (estimate.isEven) estimate.height = noise[1];
     }
-    // Of second residuals along crests: -.1 on clean ribs of eight edges; -.21 with noise of .1
-    // edges on these.
-    constexpr double kAlong = -0.15;
+    // Of second residuals along crests: at least -.22 on clean ribs of six edges, which fall, and
+    // -.1 on those of eight, which do not; -.25 and -.21 with noise of .1 edges on these.
+    constexpr double kAlongFalling = -0.235, kAlong = -0.15;
     const bool mayBeShape = !isShort || lowest < kMaxOfRelief * height[0];
-    if (estimate.isUnderShape && mayBeShape &&
-        correlationAlongCrests(graph, X, N, isMeasured) > kAlong) {
+    if (estimate.isUnderShape && ((isShort && estimate.height < kMinHeight * meanEdge) ||
+                                  (mayBeShape && correlationAlongCrests(graph, X, N, isMeasured) >
+                                                     (isShort ? kAlongFalling : kAlong)))) {
         estimate.isShape = true;
         estimate.height = 0.0;
     }

@@ -24,8 +24,8 @@ using testing::Mesh;
 constexpr int kCells = 60;
 
 /// A sheet of squares of one unit with the given height over them.
-Mesh sheet(const std::function<double(double, double)>& height) {
-    Mesh mesh = testing::rectangle(kCells, kCells, kCells, kCells);
+Mesh sheet(const std::function<double(double, double)>& height, int cells = kCells) {
+    Mesh mesh = testing::rectangle(cells, cells, cells, cells);
     for (Index i = 0; i < mesh.V.rows(); ++i) mesh.V(i, 2) = height(mesh.V(i, 0), mesh.V(i, 1));
     return mesh;
 }
@@ -102,6 +102,21 @@ TEST(Denoise, LeavesCleanReliefAndNaturalGroundBitIdentical) {
         ground.V.col(2) = 0.01 * height;
         EXPECT_EQ(denoise(ground.V, ground.F, {}).V, ground.V) << exponent;
     }
+}
+
+TEST(Denoise, LeavesFineReliefOnLargeSheets) {
+    // There the octaves fall so far below the relief that all that is fine looks like noise.
+    for (const double pitch : {3.0, 3.5, 4.0, 4.5})
+        for (const double height : {0.5, 1.0}) {
+            const Mesh dimples = sheet(
+                [&](double x, double y) { return height * wave(x, pitch) * wave(y, pitch); }, 128);
+            EXPECT_EQ(denoise(dimples.V, dimples.F, {}).V, dimples.V) << pitch << " " << height;
+            const Mesh knurls =
+                sheet([&](double x,
+                          double y) { return height * wave(x + y, pitch) * wave(x - y, pitch); },
+                      128);
+            EXPECT_EQ(denoise(knurls.V, knurls.F, {}).V, knurls.V) << pitch << " " << height;
+        }
 }
 
 TEST(Denoise, TellsReliefOfAFewEdgesFromNoise) {
