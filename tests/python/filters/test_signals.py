@@ -376,8 +376,10 @@ def test_a_missed_accuracy_or_nothing_to_filter_is_a_warning(decimated: Decimate
     assert report["warnings"][0].startswith("nothing to filter")
 
     V, F = decimated("cow.obj")
-    steep = {"filter_type": "band-stop", "power": 0.05, "feature_size": "15%"}
-    _, report = filter_scalars(V, F, noisy_field(V), **steep)
+    steep = FilterOptions(
+        filter_type="custom", transfer_function="abs(w - 1)", power=0.05, feature_size="15%"
+    )
+    _, report = filter_scalars(V, F, noisy_field(V), steep)
     assert not report["accuracy_reached"]
     assert "accuracy of 1e-06 was not reached" in report["warnings"][0]
     assert "steps" not in report["warnings"][0]
