@@ -28,6 +28,9 @@ FUZZ_OPTIONS ?= --cases 1000000
 FUZZ_EXAMPLES ?= 5000
 SANITIZE ?= OFF
 
+# Containers often set it: every process would then compile anew all that it imports.
+unexport PYTHONDONTWRITEBYTECODE
+
 BENCHMARKS := OFF
 BIN := .venv/bin
 CMAKE_OPTIONS = $(if $(WARNINGS_AS_ERRORS),-DSPECTRAL_WARNINGS_AS_ERRORS=$(WARNINGS_AS_ERRORS)) \

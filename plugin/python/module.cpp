@@ -21,6 +21,7 @@
 #include "core/laplacian/laplacian.h"
 #include "core/laplacian/laplacian_builder.h"
 #include "core/mesh/contacts.h"
+#include "core/mesh/measures.h"
 #include "core/mesh/surface.h"
 #include "core/support/memory.h"
 #include "core/support/steady_progress.h"
@@ -199,6 +200,15 @@ nb::object evaluated(const std::string& option, const std::string& text,
     return givenRows(std::move(result));
 }
 
+/// Diagonal, mean edge and diagonal of the surface: what sizes refer to.
+nb::tuple lengths(const Positions& vertices, const Indices& faces) {
+    const MeshLengths found = [&] {
+        const Running running;
+        return lengthsOf(mapOf(vertices, 3), mapOf(faces, 3));
+    }();
+    return nb::make_tuple(found.diagonal, found.meanEdge, found.surfaceDiagonal);
+}
+
 /// A third of the areas of the triangles at each vertex.
 nb::object vertexAreas(const Positions& vertices, const Indices& faces) {
     Eigen::VectorXd areas;
@@ -237,6 +247,7 @@ NB_MODULE(_core, m) {
     m.def("moved_alike", python::movedAlike, "vertices"_a, "faces"_a, "displacement"_a);
     m.def("evaluated", python::evaluated, "option"_a, "text"_a, "examples"_a, "variables"_a,
           "values"_a);
+    m.def("lengths", python::lengths, "vertices"_a, "faces"_a);
     m.def("vertex_areas", python::vertexAreas, "vertices"_a, "faces"_a);
     python::addTexts(m);
     m.def("set_memory_limit", setMemoryLimit, "limit"_a);

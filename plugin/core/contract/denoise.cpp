@@ -29,7 +29,7 @@ Fields<DenoiseCall> denoiseFields() {
     return {
         field<Call>(&Call::strength, "strength", "Denoising strength",
                     "1 removes the noise as measured. More also removes fine details; less leaves "
-                    "some noise; 0 changes nothing.")
+                    "some noise; 0 only looks for it, and changes nothing.")
             .in("factor"),
         field<Call>(&Call::noiseHeight, "noise_height", "Noise height",
                     "Standard deviation of the noise along the normals, such as 0.2e. Set it if "
@@ -158,12 +158,12 @@ std::string nothingText(const Diagnosis& diagnosis, bool isCrumpled) {
            cause + ", or give a smaller noise height or size";
 }
 
-/// What was found and done, in one line.
+/// What was found and done, in one line; at strength 0 what was found.
 std::string summaryOf(const DenoiseOptions& options, const DenoiseResult& result) {
-    if (options.strength == 0.0) return "strength 0; nothing changed";
     std::ostringstream text;
     if (const std::string note = selectionText(options.selected); !note.empty())
         text << note << "; ";
+    if (options.strength == 0.0) return text.str() + diagnosisText(result.diagnosis);
     if (const std::string spikes = spikesText(result.diagnosis); !spikes.empty())
         text << spikes << ": removed; ";
     if (result.rounds > 0)
@@ -213,7 +213,8 @@ FilterOutput run(const FilterInput& input, const MeshLengths& mesh, const Values
     FilterOutput output;
     output.report = reportOf(denoiseEntries(), result);
     output.summary = summaryOf(call, result);
-    output.text = reportText(output.summary, result, mesh.diagonal);
+    const std::string note = call.strength == 0.0 ? "; strength 0: nothing changed" : "";
+    output.text = reportText(output.summary + note, result, mesh.diagonal);
     output.warnings = warningsOf(call, output.summary, result);
     append(percentageWarnings(mesh), output.warnings);
     if (!input.whole) append(periodicWarnings(input.V, input.F, result.V), output.warnings);

@@ -100,10 +100,13 @@ Warnings percentageWarnings(const MeshLengths& mesh) {
     std::ostringstream text;
     text << std::setprecision(3);
     if (mesh.filler.vertices == 0 && mesh.diagonal > kNoticeable * mesh.surfaceDiagonal) {
-        text << mesh.outside
-             << (mesh.outside == 1 ? " vertex without faces enlarges"
-                                   : " vertices without faces enlarge")
-             << " the diagonal of the bounding box from " << mesh.surfaceDiagonal << " to "
+        if (mesh.outside == 0)  // a tile does not see them
+            text << "vertices without faces, or for missing data, enlarge";
+        else
+            text << mesh.outside
+                 << (mesh.outside == 1 ? " vertex without faces enlarges"
+                                       : " vertices without faces enlarge");
+        text << " the diagonal of the bounding box from " << mesh.surfaceDiagonal << " to "
              << mesh.diagonal
              << ": percentages refer to the larger one, defaults to the smaller. {Apply 'Remove "
                 "Unreferenced Vertices'|Remove them} first";

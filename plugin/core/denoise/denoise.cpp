@@ -125,12 +125,11 @@ RemovalOptions removalOptions(const DenoiseOptions& options, const Diagnosis& di
 }
 
 Removal removeAsDiagnosed(const FaceGraph& graph, const Points& X, const Diagnosis& diagnosis,
-                          bool isKnown, const RemovalOptions& removal, const Progress& progress) {
+                          bool hasHeight, const RemovalOptions& removal, const Progress& progress) {
     if (diagnosis.kind == NoiseKind::Voxels)
         return removeVoxelSteps(graph, X, diagnosis.voxel, diagnosis.voxelAxes,
                                 diagnosis.stepLength, removal, progress);
-    if (!(removal.noise.height.maxCoeff() > 0.0) || !(isKnown || diagnosis.isNoise()))
-        return {diagnosis.X, 0};
+    if (!hasHeight) return {diagnosis.X, 0};
     return removeNoise(graph, diagnosis.X, removal, progress);
 }
 
@@ -141,7 +140,7 @@ constexpr double kBytesPerVertex = 1000.0;
 /// Fraction of the progress for the measurement.
 constexpr double kMeasuring = 0.3;
 
-/// Measures and removes the noise, and records both in `result`.
+/// Measures and removes the noise, and records both in `result`; strength 0 only measures.
 /// @return  displacement of the part, n x 3.
 Points denoisePart(const MovingPart& part, const FaceGraph& graph, const DenoiseOptions& options,
                    const Progress& progress, DenoiseResult& result) {
@@ -174,8 +173,20 @@ Points denoisePart(const MovingPart& part, const FaceGraph& graph, const Denoise
     // Depths of pixels have few values, so that flat parts are noisy, too.
     for (std::size_t i = 0; i < diagnosis.isClean.size() && !removal.rays.arePixels; ++i)
         removal.mayMove[i] = removal.mayMove[i] && !diagnosis.isClean[i];
+    const double strength = std::min(options.strength, 1.0);
+    const bool hasHeight = diagnosis.kind != NoiseKind::Voxels &&
+                           (isKnown || diagnosis.isNoise()) &&
+                           removal.noise.height.maxCoeff() > 0.0;
+    const auto recordNoise = [&](double share) {
+        result.noiseHeight = share * std::min(heightToRemove(options, diagnosis), removal.meanEdge);
+        result.noiseSize = removal.size * removal.meanEdge;
+    };
+    if (strength == 0.0) {
+        if (hasHeight) recordNoise(1.0);
+        return Points::Zero(X0.rows(), 3);
+    }
     Removal done =
-        removeAsDiagnosed(graph, X0, diagnosis, isKnown, removal, progress.part(kMeasuring, 1.0));
+        removeAsDiagnosed(graph, X0, diagnosis, hasHeight, removal, progress.part(kMeasuring, 1.0));
     // Along rays nothing can fold: the camera sees the same triangles.
     if (done.rounds > 0 && diagnosis.kind != NoiseKind::Voxels &&
         removal.rays.direction.rows() == 0 && isCrumpled(graph, X0, done.X)) {
@@ -183,12 +194,7 @@ Points denoisePart(const MovingPart& part, const FaceGraph& graph, const Denoise
         done = {diagnosis.X, 0};
     }
     result.rounds = done.rounds;
-    const double strength = std::min(options.strength, 1.0);
-    if (done.rounds > 0 && diagnosis.kind != NoiseKind::Voxels) {
-        result.noiseHeight =
-            strength * std::min(heightToRemove(options, diagnosis), removal.meanEdge);
-        result.noiseSize = removal.size * removal.meanEdge;
-    }
+    if (done.rounds > 0 && hasHeight) recordNoise(strength);
     return strength * part.weight.asDiagonal() * (done.X - X0);
 }
 
@@ -261,7 +267,7 @@ DenoiseResult denoise(const Vertices& V, const Faces& F, const DenoiseOptions& o
     if (part.surface.X.rows() > 0)
         part.eye = part.surface.X.row(0) - V.row(whole.vertex[part.surface.vertex[0]]);
     if (height.size() > 0) part.height = height(part.surface.vertex);
-    if (options.strength > 0.0 && part.surface.X.rows() > 0) {
+    if (part.surface.X.rows() > 0) {
         const Index n = part.surface.X.rows();
         requireMemory(kBytesPerVertex * static_cast<double>(n), n);
         const FaceGraph graph = faceGraph(part.surface.F, part.surface.X.rows());

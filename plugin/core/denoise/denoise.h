@@ -13,7 +13,7 @@ namespace spectral {
 
 struct DenoiseOptions {
     double strength = 1.0;     ///< Fraction of the displacement to apply, or, if above 1, factor on
-                               ///< the noise height; >= 0.
+                               ///< the noise height; >= 0, which only looks for the noise.
     double noiseHeight = 0.0;  ///< Standard deviation of the noise, length units; 0: measure it.
     Eigen::VectorXd weight;    ///< n, 0 to 1: factor on noiseHeight at each vertex; empty: 1.
     double noiseSize = 0.0;    ///< Correlation length of the noise, length units; 0: measure it.
@@ -30,7 +30,7 @@ struct DenoiseResult : SurfaceCounts, Movement {
     Vertices V;  ///< Denoised positions; unreferenced vertices keep theirs.
 
     Diagnosis diagnosis;
-    double noiseHeight = 0.0;  ///< Height of the removed noise, length units; 0: none.
+    double noiseHeight = 0.0;  ///< Height of the removed or found noise, length units; 0: none.
     double noiseSize = 0.0;    ///< Its correlation length, length units; 0: white noise.
     Eigen::VectorXd heights;   ///< n: height of the noise at each vertex as found, or as given,
                                ///< length units; 0: none.

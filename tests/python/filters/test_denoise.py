@@ -361,10 +361,18 @@ def test_a_given_height_and_strength_are_applied(decimated: Decimated) -> None:
     assert report["noise_height"] == pytest.approx(0.05 * edge, rel=1e-6)
     Z, report = denoise_mesh(X, F, noise_height=0.1 * edge, strength=0.5)
     np.testing.assert_array_equal(Y, Z)
-    same, report = denoise_mesh(X, F, strength=0.0)
-    assert report["rounds"] == 0
-    assert report["mean_edge"] == pytest.approx(edge, rel=1e-6)
+
+
+def test_strength_0_tells_the_noise_and_leaves_it(decimated: Decimated) -> None:
+    V, F = decimated("cow.obj", 2000)
+    X = noisy(V, F, 0.2)
+    same, found = denoise_mesh(X, F, strength=0)
     np.testing.assert_array_equal(same, X)
+    _, removed = denoise_mesh(X, F)
+    for name in ("noise_kind", "noise_height", "noise_size", "noise_share", "spikes", "mean_edge"):
+        assert found[name] == removed[name]
+    assert removed["summary"] == found["summary"] + ": removed"
+    assert (found["rounds"], found["warnings"]) == (0, [])
 
 
 def test_noise_above_half_an_edge_is_a_warning(decimated: Decimated) -> None:

@@ -13,6 +13,7 @@ from meshlab_spectral.files.filtering import filter_to_scratch
 from meshlab_spectral.files.request import Request
 from meshlab_spectral.formats import ply, stl
 from meshlab_spectral.tiles.run import filter_in_tiles
+from shapes import grid, quads
 from tiled_meshes import bumpy_torus, shuffled, write_ply, write_stl
 
 TOLERATED = 1e-6  # of the diagonal
@@ -170,3 +171,15 @@ def test_debris_and_points_without_faces_are_no_obstacle(tmp_path: Path, both: B
     # hundredth of the diagonal.
     assert _largest_difference(whole, tiled) < 20 * TOLERATED
     np.testing.assert_array_equal(ply.read(tiled).parts[0].vertices[-1], debris[-1])
+
+
+def test_missing_data_of_a_terrain_are_left_out_of_sizes(tmp_path: Path, both: Both) -> None:
+    side = 80
+    V = np.array([[i, j, np.sin(i / 4) * np.cos(j / 5)] for i in range(side) for j in range(side)])
+    V[[1000, 1001, 1002, 1081, 1082], 2] = -9999.0
+    write_ply(source := tmp_path / "terrain.ply", V, quads(grid(side, side)), "<f8")
+    whole, tiled, report = both(source, 4, feature_size="6e", steps=1)
+    assert report["feature_size"] < 9.0
+    (warning,) = [one for one in report["warnings"] if "enlarge the diagonal" in one]
+    assert warning.startswith("vertices without faces, or for missing data, enlarge")
+    assert _largest_difference(whole, tiled) < 0.01 * TOLERATED  # of a diagonal of 10,000

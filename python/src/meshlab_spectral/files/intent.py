@@ -15,7 +15,7 @@ from meshlab_spectral.files.meshlab_files import check_writable
 from meshlab_spectral.files.region_vertices import chosen_parts
 from meshlab_spectral.files.request import Request
 from meshlab_spectral.files.touching import pieces
-from meshlab_spectral.filters.arrays import mean_edge
+from meshlab_spectral.filters.arrays import lengths_of
 from meshlab_spectral.filters.progress import StageCallback
 from meshlab_spectral.plugin.loading import load
 
@@ -42,15 +42,14 @@ def intent_of(request: Request, target: Path, on_stage: StageCallback) -> dict[s
         V, F = part.vertices, part.faces
         if len(F) == 0:
             raise OptionError(f"{source} has no faces: reconstruct a surface first")
-        edge, diagonal = mean_edge(V, F), float(np.linalg.norm(np.ptp(V, axis=0)))
-        surface_diagonal = float(np.linalg.norm(np.ptp(V[F.ravel()], axis=0)))
+        lengths = lengths_of(V, F)
         described = {
             "mesh": part.name,
             "vertices": len(V),
             "faces": len(F),
-            "diagonal": diagonal,
-            "mean_edge": edge,
-            "sizes": options.sizes(diagonal, edge, surface_diagonal),
+            "diagonal": lengths.diagonal,
+            "mean_edge": lengths.mean_edge,
+            "sizes": options.sizes(*lengths),
         }
         is_part = region or getattr(options, "selected", False)
         if is_part and part.selected is not None:

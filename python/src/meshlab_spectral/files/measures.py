@@ -17,8 +17,9 @@ from meshlab_spectral.files.meshlab_files import read_with_meshlab
 from meshlab_spectral.files.region_vertices import restricted
 from meshlab_spectral.files.request import Request
 from meshlab_spectral.files.touching import least_linked
+from meshlab_spectral.filters.arrays import lengths_of, lumped_areas
 from meshlab_spectral.filters.harmonics import manifold_harmonics
-from meshlab_spectral.filters.options import SpectrumOptions, TextureOptions
+from meshlab_spectral.filters.options import FilterOptions, SpectrumOptions, TextureOptions
 from meshlab_spectral.filters.progress import StageCallback
 from meshlab_spectral.filters.running import plain, run
 from meshlab_spectral.filters.spectrum import measure
@@ -37,15 +38,14 @@ _OF_NOISE = (
     "spikes",
     "voxel_size",
 )
-_LENGTHS = ("diagonal", "mean_edge", "area", "default_feature_size")
 
 
 def mesh_info(request: Request, on_stage: StageCallback) -> dict[str, Any]:
     """Describe a mesh file; several meshes are described together.
 
     Errors are those of `load_parts`; also FilterError when the mesh has no faces, no
-    area or non-finite coordinates. `on_stage` is called with "reading", "measuring" and "looking
-    for noise" as these begin, and with their progress.
+    area or non-finite coordinates. `on_stage` is called with "reading" and "looking for
+    noise" as these begin, and with their progress.
 
     Returns what `info --json` prints: names of the meshes, counts, lengths in the units of the
     file, entries of `GeometrySpectrum` and, of what Spectral Denoise would remove, of
@@ -55,10 +55,9 @@ def mesh_info(request: Request, on_stage: StageCallback) -> dict[str, Any]:
     parts = load_parts(request.source, request.mesh)
     selected = _selected(request.source, parts)
     V, F = joined(parts)
-    on_stage("measuring", None)
-    spectrum = run(SpectrumOptions.FILTER, V, F, {}, progress=on_stage).report
     on_stage("looking for noise", None)
-    denoised = run(DENOISE_NAME, V, F, {}, progress=on_stage).report
+    denoised = run(DENOISE_NAME, V, F, {"strength": 0.0}, progress=on_stage).report
+    lengths = lengths_of(V, F)
     copies = [
         Warned(
             "placement",
@@ -68,7 +67,6 @@ def mesh_info(request: Request, on_stage: StageCallback) -> dict[str, Any]:
         for part in parts
         if part.copies
     ]
-    noise = [one for one in warned(denoised) if one.code != "nothing_removed"]
     report = {
         "meshes": [part.name for part in parts if part.name],
         "vertices": len(V),
@@ -77,11 +75,14 @@ def mesh_info(request: Request, on_stage: StageCallback) -> dict[str, Any]:
         "rims": _boundary_loops(V, F),
         **selected,
         "extent": np.ptp(V, axis=0),
-        **{name: spectrum[name] for name in _LENGTHS},
-        "noise_summary": spectrum["summary"],  # what was found; denoise says what it did
+        "diagonal": lengths.diagonal,
+        "mean_edge": lengths.mean_edge,
+        "area": lumped_areas(V, F).sum(),
+        "default_feature_size": FilterOptions().sizes(*lengths)["feature_size"],
+        "noise_summary": denoised["summary"],
         **{name: denoised[name] for name in _OF_NOISE},
     }
-    return plain(with_warnings(report, copies + noise))
+    return plain(with_warnings(report, copies + warned(denoised)))
 
 
 def _boundary_loops(V: NDArray[np.float64], F: NDArray[np.int64]) -> int:

@@ -1,15 +1,24 @@
-"""Validation of meshes and of data at their vertices; vertex areas and mean edges."""
+"""Validation of meshes and of data at their vertices; vertex areas and lengths of meshes."""
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from meshlab_spectral import _core
 from meshlab_spectral.errors import ArgumentError, ArrayError, OptionError
 from meshlab_spectral.filters.mesh_objects import array_of, kind_of, known_kinds, remedy_for
 from meshlab_spectral.formats.normals import area_vectors
+
+
+class Lengths(NamedTuple):
+    """Lengths of a mesh that sizes and defaults refer to."""
+
+    diagonal: float  # of the bounding box
+    mean_edge: float
+    surface_diagonal: float  # of the bounding box of the triangles
 
 
 def mesh_arrays(
@@ -147,8 +156,7 @@ def lumped_areas(V: NDArray[np.float64], F: NDArray[np.integer]) -> NDArray[np.f
     return lumped
 
 
-def mean_edge(V: NDArray[np.float64], F: NDArray[np.integer]) -> float:
-    """Return the mean side length over all triangles; 0 without triangles."""
-    if len(F) == 0:
-        return 0.0
-    return float(np.linalg.norm(V[F] - V[np.roll(F, 1, axis=1)], axis=2).mean())
+def lengths_of(V: NDArray[np.floating], F: NDArray[np.integer]) -> Lengths:
+    """Return the lengths of a mesh with triangles, as filters measure them."""
+    corners = np.ascontiguousarray(F, dtype=np.int32)
+    return Lengths(*_core.lengths(np.ascontiguousarray(V, dtype=np.float64), corners))

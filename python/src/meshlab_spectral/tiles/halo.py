@@ -5,12 +5,12 @@ from __future__ import annotations
 import numpy as np
 
 from meshlab_spectral.errors import UntiledError
+from meshlab_spectral.filters.arrays import Lengths
 from meshlab_spectral.filters.option_types import Options
 from meshlab_spectral.filters.options import FilterOptions
 from meshlab_spectral.filters.transfer import MeshLengths, gain
 from meshlab_spectral.formats.document import Array
 from meshlab_spectral.tiles.noise import REACH
-from meshlab_spectral.tiles.survey import Lengths
 
 # Largest difference to the filter of the whole mesh that a halo may cause, relative to the
 # diagonal.

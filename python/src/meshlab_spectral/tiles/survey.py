@@ -1,26 +1,19 @@
-"""What a filter needs to know about the whole mesh: a pass over the points, one over the faces."""
+"""What a filter needs to know about the whole mesh: passes over its points and its faces."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import NamedTuple
 
 import numpy as np
 
 from meshlab_spectral.errors import MeshFileError
+from meshlab_spectral.filters.arrays import Lengths
 from meshlab_spectral.filters.progress import StageCallback
 from meshlab_spectral.formats.document import Array
 from meshlab_spectral.formats.rows import MeshRows, chunks
+from meshlab_spectral.tiles.missing_data import Sides
 
 _SAMPLE = 400_000  # points, at most, by which the cells are chosen
-
-
-class Lengths(NamedTuple):
-    """Lengths of a mesh that sizes and defaults refer to."""
-
-    diagonal: float  # of the bounding box
-    mean_edge: float
-    surface_diagonal: float  # of the bounding box of the triangles
 
 
 @dataclass(frozen=True)
@@ -34,7 +27,7 @@ class Survey:
 
 def survey(mesh: MeshRows, on_progress: StageCallback) -> Survey:
     """Measure a mesh; raises MeshFileError when a coordinate is not finite or a face is invalid."""
-    box, surface, total, sample, has_selection = _Box(), _Box(), 0.0, [], False
+    box, surface, sides, sample, has_selection = _Box(), _Box(), Sides(), [], False
     if not mesh.is_joined_by_position:
         for i, j in chunks(mesh.points):
             box.add(_finite(mesh, mesh.columns(slice(i, j))))
@@ -47,14 +40,15 @@ def survey(mesh: MeshRows, on_progress: StageCallback) -> Survey:
         X = [_finite(mesh, one) for one in mesh.corners_of(mesh.triangles(i, j))]
         for k, corners in enumerate(X):
             surface.add(corners)
-            total += float(np.linalg.norm(corners - X[k - 1], axis=1).sum())
+            sides.add(np.linalg.norm(corners - X[k - 1], axis=1))
         chosen = np.random.default_rng(i).integers(0, j - i, max(1, int(share * (j - i))))
         sample.append(X[0][chosen])
         if mesh.flags[1]:
             has_selection |= bool(mesh.selected_faces(i, j).any())
         mesh.forget()
     diagonal = surface.diagonal if mesh.is_joined_by_position else box.diagonal
-    lengths = Lengths(diagonal, total / (3 * mesh.faces), surface.diagonal)
+    edge, low, high = sides.without_missing(mesh, surface.low, surface.high)
+    lengths = Lengths(diagonal, edge, float(np.linalg.norm(high - low)))
     return Survey(lengths, np.vstack(sample), has_selection)
 
 
