@@ -160,3 +160,8 @@ def lengths_of(V: NDArray[np.floating], F: NDArray[np.integer]) -> Lengths:
     """Return the lengths of a mesh with triangles, as filters measure them."""
     corners = np.ascontiguousarray(F, dtype=np.int32)
     return Lengths(*_core.lengths(np.ascontiguousarray(V, dtype=np.float64), corners))
+
+
+def mean_edge(V: NDArray[np.floating], F: NDArray[np.integer]) -> float:
+    """Return the mean side length over all triangles; 0 without triangles."""
+    return lengths_of(V, F).mean_edge
