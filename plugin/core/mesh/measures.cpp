@@ -204,9 +204,9 @@ double signedVolume(const Vertices& V, const Faces& F) {
     const Eigen::Vector2d sum = parallelSum(F.rows(), zero, [&](Index begin, Index end) {
         Eigen::Vector2d part = Eigen::Vector2d::Zero();
         for (Index t = begin; t < end; ++t) {
-            const Eigen::RowVector3d a = V.row(F(t, 0)) - o, b = V.row(F(t, 1)) - o,
-                                     c = V.row(F(t, 2)) - o;
-            const double volume = a.dot(b.cross(c));
+            const Eigen::RowVector3d a = V.row(F(t, 0)), b = V.row(F(t, 1)), c = V.row(F(t, 2));
+            // By the edges: b x c would round off the area of what lies far from the others.
+            const double volume = (a - o).dot((b - a).cross(c - a));
             part += Eigen::Vector2d(volume, std::abs(volume));
         }
         return part;

@@ -150,6 +150,20 @@ TEST(PartOfMesh, EveryClosedComponentKeepsItsVolume) {
     EXPECT_LT(signedVolume(shrunk, mesh.F), 0.99 * signedVolume(mesh.V, mesh.F));
 }
 
+TEST(PartOfMesh, ComponentsFarApartKeepTheirVolumes) {
+    const Mesh ball = testing::withNoise(testing::icosphere(3), 0.01, 1);
+    Mesh far = ball;
+    far.V.array() += 1e5;
+    const Mesh mesh = testing::joined(ball, far);
+    FilterOptions options = smoothing(mesh);
+    options.featureSize = 0.4;
+    options.preserveVolume = true;
+    const FilterResult result = fractionalFilter(mesh.V, mesh.F, options);
+    EXPECT_EQ(result.volumes.preserved, 2);
+    const Vertices first = result.V.topRows(ball.V.rows());
+    EXPECT_NEAR(signedVolume(first, ball.F), signedVolume(ball.V, ball.F), 1e-6);
+}
+
 TEST(PartOfMesh, AnInsideOutComponentKeepsItsVolumeToo) {
     Mesh mesh = testing::withNoise(testing::icosphere(2), 0.03, 1);
     mesh.F.col(0).swap(mesh.F.col(1));

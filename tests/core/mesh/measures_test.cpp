@@ -47,6 +47,16 @@ TEST(SignedVolume, IsZeroWherePartsCancel) {
     EXPECT_EQ(signedVolume(both.V, both.F), 0.0);  // not -2e-15
 }
 
+TEST(SignedVolume, OfPartsFarApartIsTheSumOfTheirs) {
+    const Mesh ball = testing::icosphere(3);
+    Mesh far = ball;
+    far.V.array() += 1 << 20;  // both balls have the same edges, up to 1e-10
+    const Mesh both = testing::joined(ball, far);
+    const double volume = signedVolume(ball.V, ball.F);
+    EXPECT_NEAR(signedVolume(both.V, both.F), 2 * volume, 1e-6);
+    EXPECT_NEAR(signedVolume(both.V, ball.F), volume, 1e-6);
+}
+
 TEST(EnclosesVolume, IsTrueForClosedSurfacesEvenFarFromTheOrigin) {
     testing::Mesh mesh = testing::torus(2, 0.7, 24, 12);
     EXPECT_TRUE(enclosesVolume(mesh.V, mesh.F));

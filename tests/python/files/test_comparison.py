@@ -66,6 +66,15 @@ def nearest(p: Array, V: Array, F: NDArray[Any]) -> float:
     return min(best, plane[inside].min(initial=np.inf))
 
 
+def test_volumes_of_parts_far_apart_are_the_sum_of_theirs() -> None:
+    V, F = sphere(1.0, 3)
+    two = np.vstack([V, V + 1e6]), np.vstack([F, F + len(V)])
+    result = compare(two, two)
+    one = compare((V, F), (V, F))
+    assert result.volumes is not None and one.volumes is not None
+    assert result.volumes[0] == pytest.approx(2 * one.volumes[0], rel=1e-6)
+
+
 @pytest.mark.parametrize("scale", [1e-3, 1.0, 1e4])
 def test_concentric_spheres_of_other_faces_are_their_gap_apart(scale: float) -> None:
     (V, F), (W, G) = sphere(scale, 4), sphere(1.1 * scale, 3)

@@ -357,5 +357,5 @@ def _is_closed(V: Array, F: NDArray[Any]) -> bool:
 
 
 def _volume(V: Array, F: NDArray[Any]) -> float:
-    a, b, c = (V[F[:, corner]] - V.mean(axis=0) for corner in range(3))
-    return float((a * np.cross(b, c)).sum() / 6)
+    apex = V[F[:, 0]] - V.mean(axis=0)
+    return float((apex * area_vectors(V, F)).sum() / 3)
