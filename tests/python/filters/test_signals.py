@@ -386,6 +386,26 @@ def test_a_missed_accuracy_or_nothing_to_filter_is_a_warning(decimated: Decimate
 
 
 @pytest.mark.parametrize(
+    ("gain", "expression"),
+    [
+        (lambda w: 1 / (1 + w**4), "1/(1 + w^4)"),
+        (lambda w: 1 + w**2 * np.exp(-(w**2)), "1 + w^2*exp(-w^2)"),
+    ],
+)
+def test_a_smooth_gain_is_as_accurate_as_its_expression(
+    gain: Any, expression: str, decimated: Decimated
+) -> None:
+    V, F = decimated("bunny.obj")
+    field = noisy_field(V)
+    given, report = filter_scalars(V, F, field, gain=gain)
+    assert report["accuracy_reached"]
+    assert report["warnings"] == []
+    options = FilterOptions(filter_type="custom", transfer_function=expression)
+    expected, _ = filter_scalars(V, F, field, options)
+    assert np.abs(given - expected).max() < 2e-6 * np.abs(field - field.mean()).max()
+
+
+@pytest.mark.parametrize(
     "options",
     [
         {"pass_gain": 1e30},

@@ -24,7 +24,7 @@ Gain = Callable[[Array], ArrayLike]
 # Set by the command, for its child processes, too: advice then names options as a shell has them.
 SHELL = "MESHLAB_SPECTRAL_SHELL"
 
-# The core interpolates a gain's logarithm between samples, here to about 1e-5 of a smooth gain;
+# The core interpolates a gain's logarithm between samples, here to about 1e-7 of a smooth gain;
 # beyond them, where no mesh has details, the gain is constant.
 _OCTAVES, _PER_OCTAVE = 16, 128
 
@@ -131,6 +131,11 @@ def plain(report: dict[str, Any]) -> dict[str, Any]:
 
 def _samples(gain: Gain) -> Array:
     """Sample a gain; raise OptionError, which names w, when one is negative or not finite."""
+    if not callable(gain):
+        raise OptionError(
+            f"gain = {gain!r}: pass a function of w; an expression is transfer_function, with "
+            "filter_type = custom"
+        )
     w = np.exp2(np.arange(-_OCTAVES * _PER_OCTAVE, _OCTAVES * _PER_OCTAVE + 1) / _PER_OCTAVE)
     try:
         returned: Any = np.asarray(gain(w))
