@@ -89,11 +89,6 @@ namespace {
 /// Fraction of a surface whose loss is noticeable, e.g. half the tail of an elephant.
 constexpr double kNoticeable = 0.003;
 
-/// A share in percent, to two or three digits.
-std::string percentOf(double share) {
-    return numberText(100.0 * share, share < 0.1 ? 2 : 3) + " %";
-}
-
 /// "10", or "automatic, 2 in pass 2": one automatic step is not one of the paper's.
 std::string stepsText(const FilterResult& result) {
     const std::string steps = std::to_string(result.steps);

@@ -82,8 +82,11 @@ std::string nothingText(const Diagnosis& diagnosis) {
                    "noise height, such as " +
                    height + " (0.1 edges)";
         default:
-            return "found no noise clearly distinct from the shape: neither everywhere nor in some "
-                   "regions, and no spikes, voxel steps or rounded coordinates. " +
+            return std::string(
+                       "found no noise clearly distinct from the shape: neither everywhere "
+                       "nor in some regions, and no ") +
+                   (diagnosis.spikes == 0 ? "spikes, " : "") +
+                   "voxel steps or rounded coordinates. " +
                    remedyText(diagnosis.noise, diagnosis.kind == NoiseKind::Shape);
     }
 }

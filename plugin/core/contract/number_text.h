@@ -18,4 +18,9 @@ inline std::string lengthText(double length, int digits, double diagonal) {
     return numberText(length, digits) + " (" + numberText(100.0 * length / diagonal, 3) + " %)";
 }
 
+/// A share in percent, to two or three digits.
+inline std::string percentOf(double share) {
+    return numberText(100.0 * share, share < 0.1 ? 2 : 3) + " %";
+}
+
 }  // namespace spectral

@@ -21,7 +21,7 @@ std::string movementText(const std::string& done, double mean, double most, doub
 
 std::string limitText(double share) {
     if (share == 0.0) return "";
-    return "; bound reached at " + numberText(100.0 * share, 2) + " % of the surface";
+    return "; bound reached at " + percentOf(share) + " of the surface";
 }
 
 std::string surfaceText(const SurfaceCounts& counts, const char* fixed) {
