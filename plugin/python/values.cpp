@@ -18,8 +18,10 @@ namespace {
 Value valueOf(nb::handle given) {
     if (nb::isinstance<nb::bool_>(given)) return nb::cast<bool>(given);
     if (nb::isinstance<nb::str>(given)) return nb::cast<std::string>(given);
-    if (int integer = 0; PyIndex_Check(given.ptr()) && nb::try_cast(nb::int_(given), integer))
-        return integer;
+    // Not by the slot: arrays of NumPy have __index__, whatever numbers they hold.
+    const nb::object index = nb::steal(PyNumber_Index(given.ptr()));
+    if (!index.is_valid()) PyErr_Clear();
+    if (int integer = 0; index.is_valid() && nb::try_cast(index, integer)) return integer;
     if (double number = 0.0; nb::try_cast(given, number)) return number;
     return nb::cast<std::string>(nb::str(given));  // no option takes it: the error shows it
 }

@@ -246,6 +246,14 @@ def test_complex_numbers_are_refused_rather_than_cut() -> None:
             call()
 
 
+def test_masked_numbers_are_refused_rather_than_used() -> None:
+    masked = np.ma.masked_array(V[:, 0], mask=[False, True, False, False])
+    with pytest.raises(ArrayError, match=r"values are masked: .*values\.filled\(numpy\.nan\)"):
+        filter_scalars(V, F, masked)
+    unmasked, _ = filter_scalars(V, F, np.ma.masked_array(V[:, 0]))
+    np.testing.assert_array_equal(unmasked, filter_scalars(V, F, V[:, 0])[0])
+
+
 def test_arrays_of_the_wrong_shape_are_errors_of_this_package() -> None:
     for vertices, faces in ((V[:, :2], F), (V, F + 1), (V[:0], F[:0]), (V, F * 0.5), ("ab", F)):
         with pytest.raises(SpectralError) as refused:

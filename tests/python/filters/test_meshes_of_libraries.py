@@ -292,6 +292,9 @@ def test_a_selection_may_be_of_vertices_or_of_faces() -> None:
         filter_mesh(V, F, selection=[0, len(F)])
     with pytest.raises(ValueError, match=r"numpy\.flatnonzero"):
         filter_mesh(V, F, selection=np.ones(len(F), dtype=bool))
+    for mask in (V[:, 2] > 0).astype(np.uint8), (V[:, 2] > 0).astype(float):
+        with pytest.raises(ValueError, match=r"pass booleans, such as selection\.astype\(bool\)"):
+            filter_mesh(V, F, selection=mask)
 
 
 def test_a_gain_may_be_any_function_of_w() -> None:
@@ -313,6 +316,8 @@ def test_a_gain_may_be_any_function_of_w() -> None:
 def test_a_gain_must_be_finite_and_not_negative(wrong: float) -> None:
     with pytest.raises(OptionError, match=r"gain\(.*\) = .*: must be finite and not negative"):
         filter_mesh(V, F, gain=lambda w: wrong if w > 3 else 1.0)
+    with pytest.raises(OptionError, match=r"gain = '1/\(1 \+ w\)': pass a function of w"):
+        filter_mesh(V, F, gain="1/(1 + w)")  # type: ignore[call-overload]
     with pytest.raises(OptionError, match="filter_type = high-pass: gain replaces it"):
         filter_mesh(V, F, gain=lambda w: 1.0, filter_type="high-pass")
 

@@ -143,6 +143,27 @@ def test_a_value_of_the_wrong_type_is_refused_by_the_name_of_the_option(
 
 
 @pytest.mark.parametrize(
+    ("name", "value", "same"),
+    [
+        ("stop_gain", np.array(0.5), 0.5),
+        ("power", np.float32(0.5), 0.5),
+        ("steps", np.array(5), 5),
+        ("steps", np.int8(5), 5),
+        ("max_displacement", np.array(0.5), 0.5),
+        ("preserve_volume", np.True_, True),
+    ],
+)
+def test_numbers_of_numpy_are_numbers(name: str, value: Any, same: float) -> None:
+    assert FilterOptions(**{name: value}) == FilterOptions(**{name: same})
+
+
+@pytest.mark.parametrize("value", [np.array(2.5), np.array([5]), np.array(True)])
+def test_arrays_that_are_no_count_are_refused(value: Any) -> None:
+    with pytest.raises(OptionError, match="steps = "):
+        FilterOptions(steps=value)
+
+
+@pytest.mark.parametrize(
     ("text", "value", "unit"),
     [("5%", 5, "%"), (" 2.5 % ", 2.5, "%"), ("0.02", 0.02, ""), ("1e3", 1000, ""), ("6e", 6, "e")],
 )

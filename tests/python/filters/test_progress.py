@@ -75,6 +75,16 @@ def test_a_function_that_returns_false_cancels(call: str) -> None:
         CALLS[call](progress=lambda stage, fraction: False)
 
 
+def test_a_comparison_of_numpy_cancels_as_well() -> None:
+    with pytest.raises(Cancelled):
+        CALLS["filter_mesh"](progress=lambda stage, fraction: np.float64(fraction) > 2.0)
+
+
+def test_what_is_no_function_is_refused() -> None:
+    with pytest.raises(OptionError, match="progress = 'bar': pass True, or a function"):
+        CALLS["filter_mesh"](progress="bar")
+
+
 @each_call
 def test_false_and_none_show_nothing(call: str, capfd: pytest.CaptureFixture[str]) -> None:
     CALLS[call](progress=False)

@@ -465,6 +465,8 @@ def test_fwhm_is_the_width_at_half_height_of_what_becomes_of_a_point() -> None:
         {"fwhm": -1.0},
         {"fwhm": np.nan},
         {"fwhm": np.inf},
+        {"fwhm": "2%"},
+        {"fwhm": np.array([1.0, 2.0])},
         {"fwhm": 1.0, "feature_size": 2.0},
         {"fwhm": 1.0, "filter_type": "high-pass"},
         {"fwhm": 1.0, "response": "ideal"},

@@ -65,7 +65,9 @@ def mesh_arrays(
 
 
 def real_numbers(values: Any, name: str) -> NDArray[np.float64]:
-    """Return values as an array; raise ArrayError when they are complex, or no numbers."""
+    """Return values as an array; raise ArrayError for complex or masked ones, or no numbers."""
+    if np.ma.is_masked(values):
+        raise ArrayError(f"{name} are masked: pass a plain array, such as {name}.filled(numpy.nan)")
     try:
         array = np.asarray(values)
         if not np.iscomplexobj(array):
@@ -125,6 +127,11 @@ def _chosen(selection: ArrayLike, count: int, F: NDArray[np.integer]) -> NDArray
     array = np.asarray(selection)
     if array.dtype == bool and array.shape == (count,):
         return array
+    if array.shape == (count,) and count > 2 and set(np.unique(array)) <= {0, 1}:
+        raise ArrayError(
+            f"selection has a 0 or 1 for each of {count} vertices: pass booleans, such as "
+            "selection.astype(bool)"
+        )
     chosen = np.zeros(count, dtype=bool)
     if array.size == 0:
         return chosen

@@ -9,6 +9,8 @@ from dataclasses import dataclass, field, fields
 from numbers import Integral, Real
 from typing import Any, Literal, TypeVar
 
+import numpy as np
+
 from meshlab_spectral import _core
 from meshlab_spectral.errors import OptionError
 from meshlab_spectral.other_words import instead_of
@@ -197,6 +199,8 @@ class Options:
 def _plain(value: Any) -> Any:
     if isinstance(value, Length):
         return value.exactly
+    if isinstance(value, np.bool_):
+        return bool(value)
     is_percentage = type(value).__name__ == "PercentageValue"  # of pymeshlab
     return f"{value.value()}%" if is_percentage else value
 

@@ -9,6 +9,10 @@ from collections.abc import Callable, Iterator
 from importlib.util import find_spec
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
+from meshlab_spectral.errors import OptionError
+
 if TYPE_CHECKING:
     from rich.console import Console
 
@@ -26,8 +30,12 @@ def progress_callback(progress: Progress | bool | None) -> Iterator[Progress | N
 
     Without rich, which only the command needs, a terminal gets lines, too.
     """
-    if not isinstance(progress, bool):
-        yield progress
+    if progress is None:
+        yield None
+    elif callable(progress):
+        yield _answered(progress)
+    elif not isinstance(progress, bool):
+        raise OptionError(f"progress = {progress!r}: pass True, or a function")
     elif not progress:
         yield None
     elif _is_notebook():
@@ -40,6 +48,16 @@ def progress_callback(progress: Progress | bool | None) -> Iterator[Progress | N
             yield update
     else:
         yield lines_now_and_then(lambda line: print(line, file=sys.stderr, flush=True))
+
+
+def _answered(progress: Progress) -> Progress:
+    """Return `progress` with a bool as its answer, also where that is one of NumPy."""
+
+    def update(stage: str, fraction: float) -> bool:
+        answer = progress(stage, fraction)
+        return not isinstance(answer, (bool, np.bool_)) or bool(answer)
+
+    return update
 
 
 @contextlib.contextmanager

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from functools import partial
 from math import isfinite, log, pi, sqrt
+from numbers import Real
 from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
@@ -112,7 +113,7 @@ def filter_scalars(
     if fwhm is not None:
         options, named = _smoothing(fwhm, options, named, gain)
     parameters = _parameters(options, named, gain)
-    given_values = np.asarray(array_of(mesh_or_vertices, values, "values"))
+    given_values = array_of(mesh_or_vertices, values, "values")
     Q = real_numbers(given_values, "values")
     if Q.ndim not in (1, 2) or len(Q) != len(V) or Q.size == 0:
         raise ArrayError(
@@ -120,7 +121,7 @@ def filter_scalars(
             f"with {len(V)} rows"
         )
 
-    labels = _warning_of_labels(given_values)
+    labels = _warning_of_labels(np.asarray(given_values))
 
     filter_ = partial(run, _SCALARS, V, F, parameters, gain=gain, threads=threads)
     fields = Q.reshape(len(V), -1)
@@ -176,9 +177,10 @@ def filter_colors(
     if colors is None:
         raise ArgumentError("colors: pass red, green and blue of each vertex")
     parameters = _parameters(options, named, gain)
-    C = np.asarray(array_of(mesh_or_vertices, colors, "colors"))
+    given_colors = array_of(mesh_or_vertices, colors, "colors")
+    real_numbers(given_colors, "colors")
+    C = np.asarray(given_colors)
     most = 1 if np.issubdtype(C.dtype, np.floating) else 255
-    real_numbers(C, "colors")
     if C.shape not in ((len(V), 3), (len(V), 4)) or not ((C >= 0) & (most >= C)).all():
         raise ArrayError(
             f"colors: pass {len(V)} x 3 or {len(V)} x 4 integers from 0 to 255, or floating-point "
@@ -227,8 +229,8 @@ def _smoothing(
         raise OptionError(f"fwhm: for a low-pass, not for filter_type = {named['filter_type']}")
     if named.get("response", "gaussian") != "gaussian":
         raise OptionError(f"fwhm: for a Gaussian, not for response = {named['response']}")
-    if not (fwhm > 0 and isfinite(fwhm)):
-        raise OptionError(f"fwhm = {fwhm}: must be a length above zero")
+    if not (isinstance(fwhm, Real) and fwhm > 0 and isfinite(fwhm)):
+        raise OptionError(f"fwhm = {fwhm}: must be a length above zero, in the units of the mesh")
     return None, {**named, "feature_size": _SIZE_PER_FWHM * fwhm}
 
 
