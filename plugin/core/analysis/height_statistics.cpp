@@ -32,12 +32,24 @@ void measureHeights(const Eigen::VectorXd& h, const Eigen::VectorXd& areas,
     texture.Sv = -lowest;
     texture.Sz = highest - lowest;
     if (texture.Sq == 0.0) return;
-    constexpr double kFlat = 1e-3;
-    for (Index i = 0; i < h.size(); ++i)
-        if (counts[i] && std::abs(h[i]) < kFlat * texture.Sq)
-            texture.flat += areas[i] / texture.area;
     texture.Ssk = cubes / texture.area / std::pow(texture.Sq, 3);
     texture.Sku = fourths / texture.area / std::pow(texture.Sq, 4);
+}
+
+/// Area of the triangles whose corners all count and are below a thousandth of Sq: samples of waves
+/// may be exactly at their zeros.
+double flatArea(const Eigen::VectorXd& h, const Vertices& reference, const Faces& F,
+                const std::vector<bool>& counts, double Sq) {
+    constexpr double kFlat = 1e-3;
+    const auto isFlat = [&](int i) { return counts[i] && std::abs(h[i]) < kFlat * Sq; };
+    double area = 0.0;
+    for (Index t = 0; t < F.rows(); ++t) {
+        if (!isFlat(F(t, 0)) || !isFlat(F(t, 1)) || !isFlat(F(t, 2))) continue;
+        const Eigen::RowVector3d a = reference.row(F(t, 1)) - reference.row(F(t, 0));
+        const Eigen::RowVector3d b = reference.row(F(t, 2)) - reference.row(F(t, 0));
+        area += 0.5 * a.cross(b).norm();
+    }
+    return area;
 }
 
 /// Evaluated vertices from the highest to the lowest.
@@ -146,6 +158,7 @@ TextureParameters textureParameters(const Eigen::VectorXd& h, const Vertices& re
     TextureParameters texture;
     const Eigen::VectorXd areas = lumpedMass(reference, F);
     measureHeights(h, areas, counts, texture);
+    texture.flat = flatArea(h, reference, F, counts, texture.Sq) / texture.area;
     const std::vector<Index> order = descending(h, counts);
     measureDistribution(h, areas, order, texture);
     measureCore(h, areas, order, texture);

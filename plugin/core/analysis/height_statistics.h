@@ -22,7 +22,7 @@ struct TextureParameters : TextureSlopes {
     double Sk = 0.0, Spk = 0.0, Svk = 0.0;  ///< Core height, reduced peaks and valleys, lengths.
     double Smr1 = 0.0, Smr2 = 0.0;          ///< Material ratios at the ends of the core, 0 to 1.
     double area = 0.0;  ///< Of the reference surface where it is evaluated, length squared.
-    double flat = 0.0;  ///< Share of it with heights below a thousandth of Sq, 0 to 1.
+    double flat = 0.0;  ///< Share of it in triangles with heights below a thousandth of Sq.
 
     Eigen::VectorXd histogramHeights;  ///< Centres of `kHistogramBins` equal bins, ascending.
     Eigen::VectorXd histogramShares;   ///< Share of the area in each bin.

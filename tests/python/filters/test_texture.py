@@ -309,6 +309,14 @@ def test_only_the_selection_is_measured() -> None:
     assert not any("has no texture" in warning for warning in texture.warnings)
 
 
+def test_waves_sampled_at_their_zeros_are_texture() -> None:
+    V, F = square("fine")
+    V[:, 2] = 0.004 * np.sin(np.pi * np.round(V[:, 0] / V[:, 0].max() * 279) / 5)
+    texture = surface_texture(V, F, waviness=3.0, form="plane")
+    assert (np.abs(texture.height) < 1e-6).sum() > 0.19 * texture.vertices_evaluated
+    assert not any("has no texture" in warning for warning in texture.warnings)
+
+
 def test_histogram_and_bearing_curve_are_those_of_the_heights() -> None:
     V, F = square("fine")
     texture = surface_texture(waves(V), F, waviness=3.0)

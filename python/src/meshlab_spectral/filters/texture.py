@@ -134,8 +134,8 @@ def surface_texture(
     in the units of the mesh. `waviness` and `noise` may be given by the names of the standard,
     `nesting_index_l` and `nesting_index_s`.
 
-    End effects: nothing within a cutoff of a boundary or a crease counts. Points missing, holes of
-    up to half a cutoff, have weight 0 in the filters instead (normalized convolution).
+    End effects: nothing within a cutoff of a boundary or a crease counts. Holes of up to a quarter
+    of a cutoff are points missing instead: there the filters see the mean of their rims.
 
     Parameters
     ----------
