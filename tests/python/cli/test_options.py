@@ -12,6 +12,7 @@ import numpy as np
 import plyfile
 import pymeshlab
 import pytest
+import tomllib
 from commands import arrays_of, assert_fails, command, succeeded
 from helpers import FILTER, as_percentages, loaded, other_options, percent
 from meshlab_spectral import FilterOptions, denoise_preset, filter_preset
@@ -174,6 +175,20 @@ def test_the_shell_completes_commands_options_and_choices(line: str, completed: 
         COMP_CWORD=str(len(line.split())),
     )
     assert done.stdout.splitlines() == [completed], done.stderr
+
+
+@pytest.mark.parametrize("order", [1, -1])
+def test_an_equalizer_overrides_a_preset_on_either_side_of_it(
+    order: int, samples: Path, tmp_path: Path
+) -> None:
+    shortcuts = [["--preset", "sharpen"], ["--equalizer", "1,1,1,1,1,0"]][::order]
+    target, recipe = tmp_path / "out.ply", tmp_path / "one.toml"
+    words = ["filter", samples / "bunny.obj", target, "--save-recipe", recipe]
+    command(*words, *shortcuts[0], *shortcuts[1])
+    options = tomllib.loads(recipe.read_text())["filter"]
+    assert options["filter_type"] == "custom"
+    assert options["transfer_function"].endswith("3e:0")
+    assert options["feature_size"] == "3%"
 
 
 def test_the_equalizer_agrees_with_that_of_meshlab(samples: Path, tmp_path: Path) -> None:

@@ -66,6 +66,8 @@ OPTIONS = {
         "--equalizer 1,1,1,1,1,-1": "1,1,1,1,1,-1",
         "--equalizer 1,1,1,1,1,x": "1,1,1,1,1,x",
         "--equalizer 1,1,1,1,1,nan": "1,1,1,1,1,nan",
+        "--equalizer 1,1,1,1,1,1 --filter-type high-pass": "--equalizer replaces --filter-type",
+        "--transfer-function w --equalizer 1,1,1,1,1,1": "replaces --transfer-function",
         "--preset beautify": "caricature",
     },
     "denoise": {

@@ -68,7 +68,7 @@ def _use_preset(context: typer.Context, name: str | None) -> str | None:
             _, values = preset_of(name)
         except OptionError as error:
             raise typer.BadParameter(str(error)) from error
-        context.default_map = {**(context.default_map or {}), **values}
+        context.default_map = {**values, **(context.default_map or {})}  # an equalizer overrides
     return name
 
 
@@ -143,6 +143,10 @@ def with_options(
         def run(arguments: dict[str, Any]) -> None:
             source = arguments.pop("context").get_parameter_source
             values = {name: arguments.pop(name) for name in added}
+            for name in ("filter_type", "transfer_function"):
+                given = name in values and source(name).name == "COMMANDLINE"
+                if given and values["equalizer"] is not None:
+                    raise typer.BadParameter(f"--equalizer replaces {flag(name)}: leave one out")
             for table in set(of_objects.values()):
                 names = [name for name, of in of_objects.items() if of is table]
                 try:
