@@ -216,18 +216,27 @@ double signedVolume(const Vertices& V, const Faces& F) {
 
 bool enclosesVolume(const Vertices& V, const Faces& F) {
     constexpr double kRoundOff = 1e-9;
-    const Eigen::Vector4d zero = Eigen::Vector4d::Zero();  // sum of area vectors, and of lengths
-    const Eigen::Vector4d sum = parallelSum(F.rows(), zero, [&](Index begin, Index end) {
-        Eigen::Vector4d part = Eigen::Vector4d::Zero();
+    const Eigen::RowVector3d low = V.colwise().minCoeff(), high = V.colwise().maxCoeff();
+    const Eigen::RowVector3d o = 0.5 * (low + high);
+    // Sums of (centroid, 1)^T (area vector, its length).
+    const Eigen::Matrix4d zero = Eigen::Matrix4d::Zero();
+    const Eigen::Matrix4d sum = parallelSum(F.rows(), zero, [&](Index begin, Index end) {
+        Eigen::Matrix4d part = Eigen::Matrix4d::Zero();
         for (Index t = begin; t < end; ++t) {
-            const Eigen::RowVector3d a = V.row(F(t, 0)), b = V.row(F(t, 1)), c = V.row(F(t, 2));
+            const Eigen::RowVector3d a = V.row(F(t, 0)) - o, b = V.row(F(t, 1)) - o,
+                                     c = V.row(F(t, 2)) - o;
             const Eigen::RowVector3d normal = (b - a).cross(c - a);
-            part.head<3>() += normal.transpose();
-            part[3] += normal.norm();
+            Eigen::Vector4d centroid;
+            centroid << ((a + b + c) / 3.0).transpose(), 1.0;
+            part.leftCols<3>() += centroid * normal;
+            part.col(3) += centroid * normal.norm();
         }
         return part;
     });
-    return sum.head<3>().norm() <= kRoundOff * sum[3];
+    const double limit = kRoundOff * sum(3, 3);
+    Eigen::Matrix3d moments = sum.topLeftCorner<3, 3>();
+    moments.diagonal().array() -= moments.trace() / 3.0;
+    return sum.row(3).head<3>().norm() <= limit && moments.norm() <= limit * (high - low).norm();
 }
 
 }  // namespace spectral

@@ -65,8 +65,9 @@ double surfaceArea(const Vertices& V, const Faces& F);
 /// @param V  n x 3, n >= 1.
 double signedVolume(const Vertices& V, const Faces& F);
 
-/// Whether the area vectors of the triangles sum to zero up to round-off, as they do for closed,
-/// consistently oriented surfaces: the signed volume then does not depend on the centre.
+/// Whether a surface is closed and consistently oriented, as far as its integrals tell up to
+/// round-off: that of the normal is 0, and that of position and normal, x n^T, the volume times the
+/// identity. The first alone holds for an open tube, too.
 bool enclosesVolume(const Vertices& V, const Faces& F);
 
 }  // namespace spectral

@@ -60,7 +60,7 @@ TEST(SignedVolume, OfPartsFarApartIsTheSumOfTheirs) {
 TEST(EnclosesVolume, IsTrueForClosedSurfacesEvenFarFromTheOrigin) {
     testing::Mesh mesh = testing::torus(2, 0.7, 24, 12);
     EXPECT_TRUE(enclosesVolume(mesh.V, mesh.F));
-    mesh.V.rowwise() += Eigen::RowVector3d(1e5, -2e5, 3e5);
+    mesh.V.rowwise() += Eigen::RowVector3d(1e7, -2e7, 3e7);
     EXPECT_TRUE(enclosesVolume(mesh.V, mesh.F));
 }
 
@@ -71,6 +71,15 @@ TEST(EnclosesVolume, IsFalseForOpenSurfacesAndFlippedTriangles) {
     EXPECT_FALSE(enclosesVolume(sphere.V, sphere.F.topRows(sphere.F.rows() - 1)));
     std::swap(sphere.F(0, 1), sphere.F(0, 2));
     EXPECT_FALSE(enclosesVolume(sphere.V, sphere.F));
+}
+
+TEST(EnclosesVolume, IsFalseForAnOpenTube) {
+    testing::Mesh tube = testing::rectangle(2.0 * kPi, 3.0, 24, 12);
+    for (Index i = 0; i < tube.V.rows(); ++i) {
+        const double angle = tube.V(i, 0), height = tube.V(i, 1);
+        tube.V.row(i) << std::cos(angle), std::sin(angle), height;
+    }
+    EXPECT_FALSE(enclosesVolume(tube.V, tube.F));
 }
 
 /// A terrain of cells of 30, with heights of up to 100, and some vertices without data.

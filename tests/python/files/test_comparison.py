@@ -94,6 +94,14 @@ def test_concentric_spheres_of_other_faces_are_their_gap_apart(scale: float) -> 
     )
 
 
+def test_closed_surfaces_alone_have_volumes() -> None:
+    V, F = sphere(1.0, 3)
+    far = V + 1e6
+    assert compare((far, F), (far, F)).volumes == pytest.approx((4.15, 4.15), rel=0.02)
+    is_cap = (abs(V[:, 2]) > 0.9)[F].any(axis=1)  # a tube, whose area vectors cancel
+    assert compare((V, F[~is_cap]), (V, F[~is_cap])).volumes is None
+
+
 def test_shifted_planes_are_the_shift_apart_on_its_side() -> None:
     for shift in (0.25, -0.25):
         (V, F), (W, G) = square(8), square(5)

@@ -350,10 +350,14 @@ def _deviation(values: Array, V: Array, areas: Array) -> Deviation:
 
 
 def _is_closed(V: Array, F: NDArray[Any]) -> bool:
-    """Whether the area vectors sum to zero: then the volume does not depend on the origin."""
+    """Whether a surface is closed: the integrals of n and x n^T are then 0 and volume * I."""
     vectors = area_vectors(V, F)
-    total = float(np.linalg.norm(vectors, axis=1).sum())
-    return bool(np.linalg.norm(vectors.sum(axis=0)) <= _CLOSED * total)
+    limit = _CLOSED * float(np.linalg.norm(vectors, axis=1).sum())
+    moments = (V - V.mean(axis=0))[F].mean(axis=1).T @ vectors
+    moments -= np.eye(3) * np.trace(moments) / 3
+    extent = float(np.linalg.norm(np.ptp(V, axis=0)))
+    is_balanced = np.linalg.norm(vectors.sum(axis=0)) <= limit
+    return bool(is_balanced and np.linalg.norm(moments) <= limit * extent)
 
 
 def _volume(V: Array, F: NDArray[Any]) -> float:
