@@ -39,5 +39,11 @@ TEST(NoiseText, SuggestsRipplesWhereThereIsNoDetail) {
     EXPECT_EQ(remedyOf(none), ripples);
 }
 
+TEST(NoiseText, GivesLengthsInEdgesAndInUnits) {
+    Diagnosis scan = shapeWith(0.25, 1.5);
+    scan.kind = NoiseKind::Correlated;
+    EXPECT_EQ(noiseText(scan), "scanner noise: height 0.25 edges (0.5), size 1.5 edges (3)");
+}
+
 }  // namespace
 }  // namespace spectral

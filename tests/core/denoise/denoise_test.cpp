@@ -221,6 +221,22 @@ TEST(Denoise, DoesNotCrumpleAMeshOfNeedles) {
     EXPECT_FALSE(isCrumpled(graph, needles.V, needles.V));
 }
 
+TEST(Denoise, HasCrumpledASurfaceWhereOnePercentOfItsEdgesAreFolded) {
+    const Mesh mesh = testing::rectangle(20, 20, 20, 20);
+    const FaceGraph graph = faceGraph(mesh.F, mesh.V.rows());
+    // Vertices that pass their neighbours turn faces over: one of them less than a hundredth.
+    const auto isCrumpledBy = [&](int apart) {
+        Points X = mesh.V;
+        for (Index i = 0; i < X.rows(); ++i) {
+            const double x = mesh.V(i, 0), y = mesh.V(i, 1);
+            if (std::fmod(x, apart) == 3.0 && std::fmod(y, apart) == 3.0) X(i, 0) += 1.5;
+        }
+        return isCrumpled(graph, mesh.V, X);
+    };
+    EXPECT_FALSE(isCrumpledBy(20));
+    EXPECT_TRUE(isCrumpledBy(5));
+}
+
 TEST(Denoise, UnfoldsFaces) {
     const Mesh mesh = testing::icosphere(4);
     const auto folded = [&](const Vertices& X) {

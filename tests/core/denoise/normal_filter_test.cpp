@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Cholesky>
+#include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 #include <random>
 #include <utility>
@@ -141,6 +143,27 @@ TEST(VertexUpdate, IsThatOfItsSweeps) {
         const Vertices found = followNormals(graph, noisy.V, N, mayMove, sweep);
         EXPECT_LT((found - X).norm(), 1e-3 * (X - noisy.V).norm());
         EXPECT_EQ(found.row(7), noisy.V.row(7));
+    }
+}
+
+TEST(VertexUpdate, AlongGrazingLinesIsHeldBack) {
+    // A vertex above a plane sees the centroids of its faces at a third of its height. Along a line
+    // with the share s of the normal, squared, it goes there at once if s > 0.3, else in part.
+    Mesh mesh = testing::rectangle(4, 4, 4, 4);
+    Index middle = 0;
+    (mesh.V.rowwise() - mesh.V.colwise().mean()).rowwise().norm().minCoeff(&middle);
+    mesh.V(middle, 2) = 0.1;
+    std::vector<bool> mayMove(static_cast<std::size_t>(mesh.V.rows()), false);
+    mayMove[middle] = true;
+    const Points N = Eigen::RowVector3d::UnitZ().replicate(mesh.F.rows(), 1);
+    for (const double share : {1.0, 0.5, 0.09, 0.01}) {
+        const Eigen::RowVector3d line(std::sqrt(1.0 - share), 0.0, std::sqrt(share));
+        const Points D = line.replicate(mesh.V.rows(), 1);
+        const Points X =
+            followNormalsAlong(faceGraph(mesh.F, mesh.V.rows()), mesh.V, N, D, mayMove, 3);
+        const double left = 1.0 - 2.0 / 3.0 * std::min(1.0, share / 0.3);
+        EXPECT_NEAR(X(middle, 2), 0.1 * std::pow(left, 3), 1e-4) << share;
+        EXPECT_LT((X - mesh.V).row(middle).cross(line).norm(), 1e-15) << share;
     }
 }
 

@@ -305,6 +305,16 @@ TEST(LeastRisk, MovesAlongTheSurfaceOnlyWhereNoiseHasAllDirections) {
     EXPECT_EQ(withLeastRisk(graph, along, std::vector<bool>(all.size(), false), 0.1), along);
 }
 
+TEST(LeastRisk, TakesLessAwayThanTheHeightOfTheNoise) {
+    Mesh flat = sheet([](double, double) { return 0.0; });
+    flat.V.col(2) = 0.1 * testing::whiteNoise(flat.V.rows());
+    const FaceGraph graph = faceGraph(flat.F, flat.V.rows());
+    for (const double height : {0.1, 0.2, 0.4}) {
+        const Points X = withLeastRisk(graph, flat.V, testing::everywhere(flat.V.rows()), height);
+        EXPECT_LT((X - flat.V).norm() / std::sqrt(double(X.rows())), 0.98 * height) << height;
+    }
+}
+
 TEST(ScanRays, AreTheDirectionOfNoiseOrTheRaysOfPixels) {
     const auto hills = [](double x, double y) { return wave(x, 25.0) + wave(y, 31.0); };
     Mesh scan = sheet(hills);

@@ -2,11 +2,14 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "core/graph/diffusion.h"
 #include "core/graph/robust_statistics.h"
 #include "core/noise/spikes.h"
+#include "core/noise/stretched_axis.h"
 #include "core/noise/voxel_lattice.h"
 #include "support/noisy_shapes.h"
 
@@ -246,6 +249,65 @@ TEST(Spikes, AFewHighOnesAreCertainButCornersAreNot) {
     for (int k = 0; k < 4; ++k) tent.F.row(count + k) << corners[k], corners[(k + 1) % 4], top;
     tent.V(top, 2) = 3.0;
     EXPECT_EQ(diagnosed(tent).spikes, 0);
+}
+
+TEST(Spikes, OfThreeNeighboursOnOneSideAreADetail) {
+    const Mesh sphere = testing::icosphere(4);
+    const double edge = meanEdgeLength(sphere.V, sphere.F);
+    const auto found = [&](const std::vector<double>& heights) {  // at the corners of a face
+        Mesh mesh = sphere;
+        for (int c = 0; c < static_cast<int>(heights.size()); ++c)
+            mesh.V.row(sphere.F(900, c)) *= 1.0 + heights[c] * edge;
+        return findSpikes(faceGraph(mesh.F, mesh.V.rows()), mesh.V,
+                          testing::everywhere(mesh.V.rows()), 4.0, edge)
+            .count;
+    };
+    EXPECT_EQ(found({1.0, 1.0, 1.0}), 0);
+    EXPECT_EQ(found({1.0, 1.0}), 2);
+}
+
+TEST(Spikes, AreCertainWhereTheyExplainTheResidual) {
+    Mesh mesh = testing::icosphere(4);
+    const double edge = meanEdgeLength(mesh.V, mesh.F);
+    Spikes spikes;
+    spikes.N = mesh.V;
+    spikes.height.setZero(mesh.V.rows());
+    const FaceGraph graph = faceGraph(mesh.F, mesh.V.rows());
+    // What is left of a residual is the square of the share of the height that is not explained.
+    for (const auto& [i, share] : {std::pair{100, 1.0}, {700, 0.9}, {1500, 0.7}}) {
+        mesh.V.row(i) *= 1.0 + 4.0 * edge;
+        spikes.height[i] = share * 4.0 * edge;
+    }
+    const Spikes certain = certainSpikes(graph, mesh.V, spikes, edge);
+    EXPECT_EQ(certain.count, 2);
+    EXPECT_EQ(certain.height[1500], 0.0);
+}
+
+TEST(Diagnosis, ComponentsAreCleanByTheNoiseInTheirOwnEdges) {
+    const Mesh coarse = testing::withGaussianNoise(testing::icosphere(4), 0.2, 7);
+    const Index n = coarse.V.rows();
+    for (const double noise : {0.2, 0.0}) {
+        const Mesh fine = testing::withGaussianNoise(testing::icosphere(2), noise, 8);
+        Mesh both{Vertices(n + fine.V.rows(), 3), Faces(coarse.F.rows() + fine.F.rows(), 3)};
+        both.V << coarse.V, 0.02 * fine.V;
+        both.V.bottomRows(fine.V.rows()).col(0).array() += 3.0;
+        both.F << coarse.F, fine.F.array() + static_cast<int>(n);
+        const Diagnosis found = diagnosed(both);
+        const Index clean = std::count(found.isClean.begin(), found.isClean.end(), true);
+        EXPECT_EQ(clean, noise > 0.0 ? 0 : fine.V.rows());
+    }
+}
+
+TEST(StretchedAxis, IsThatOfATerrainButNotOfAClosedSurface) {
+    Mesh terrain = testing::rectangle(30, 30, 30, 30);
+    terrain.V.col(2) = 100.0 * (terrain.V.col(0) / 4.0).array().sin();
+    EXPECT_EQ(stretchedAxis(terrain.F, terrain.V), 2);
+    terrain.V.col(2) *= 1e-3;
+    EXPECT_EQ(stretchedAxis(terrain.F, terrain.V), std::nullopt);
+    // Half of it faces up, half down.
+    Mesh needle = testing::icosphere(3);
+    needle.V.col(1) *= 1000.0;
+    EXPECT_EQ(stretchedAxis(needle.F, needle.V), std::nullopt);
 }
 
 }  // namespace

@@ -65,6 +65,20 @@ TEST(LocalAverage, DeviationIsThatOfItsPlaceAndIgnoresOutliers) {
     }
 }
 
+TEST(NoiseField, HasTheQuantilesOfItsHeightsInEdges) {
+    const Mesh mesh = testing::icosphere(4);
+    const Index n = mesh.V.rows();
+    const double edge = meanEdgeLength(mesh.V, mesh.F);
+    // From 0 to 1 edge: a tenth of them is lower than the lowest, 2 % are higher than the highest.
+    const NoiseField field = NoiseField::ofHeights(faceGraph(mesh.F, n), mesh.V,
+                                                   Eigen::VectorXd::LinSpaced(n, 0.0, edge));
+    EXPECT_NEAR(field.lowest, 0.1, 0.02);
+    EXPECT_NEAR(field.median, 0.5, 0.1);
+    EXPECT_NEAR(field.highest, 0.98, 0.1);
+    EXPECT_NEAR(field.share, 1.0, 1e-3);
+    EXPECT_NEAR(field.height[n - 1], edge, 1e-12);
+}
+
 TEST(NoiseField, IsTheHeightOfThePlaceAndZeroWhereThereIsNone) {
     for (const double height : {0.15, 0.2, 0.4})
         for (const Mesh& shape : {testing::icosphere(5), testing::cube(30)}) {
