@@ -102,5 +102,13 @@ TEST(Artefacts, EstimateTheRoundOffAtVerticesOfTinyMass) {
     EXPECT_LE(artefacts.maximum, 3.0 * artefacts.errorEstimate + 1e-5);
 }
 
+TEST(Artefacts, AreLengthsWithTheirError) {
+    const Mesh mesh = testing::blob();
+    const Artefacts small = measured(mesh, 0.1), large = measured({100.0 * mesh.V, mesh.F}, 0.1);
+    EXPECT_NEAR(large.rms / small.rms, 100.0, 1e-3);
+    EXPECT_NEAR(large.maximum / small.maximum, 100.0, 1e-3);
+    EXPECT_NEAR(large.errorEstimate / small.errorEstimate, 100.0, 1.0);
+}
+
 }  // namespace
 }  // namespace spectral

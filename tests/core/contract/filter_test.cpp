@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "core/contract/fractional_report.h"
 #include "core/contract/length.h"
 #include "core/contract/parameter.h"
 #include "core/contract/presets.h"
@@ -165,6 +166,15 @@ TEST(Filters, WarnOfParametersWithoutEffect) {
                                             "passes has no effect without steps = 0"};
     EXPECT_EQ(textsOf(output.warnings), expected);
     for (const Warning& one : output.warnings) EXPECT_EQ(one.code, WarningCode::UnusedOption);
+}
+
+TEST(FractionalText, GivesTheRoundingOfCreasesInPercentOfTheDiagonal) {
+    FilterResult result;
+    result.roundedCreases = {12, 0.5};
+    const std::string text = fractionalText({}, result, 10.0, "", "");
+    EXPECT_NE(text.find("12 vertices along sharp edges moved by up to 0.5 (5 % of the diagonal)"),
+              std::string::npos)
+        << text;
 }
 
 TEST(Warnings, HaveCodesOfTheirOwn) {

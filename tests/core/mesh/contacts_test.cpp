@@ -101,6 +101,13 @@ TEST(Parting, IsFoundWhereAComponentLeavesOneThatItTouched) {
     EXPECT_LE(parting.distance, 0.4);
     EXPECT_GE(parting.distance, 0.4 - edge);
     EXPECT_EQ(partingOf(head.V, head.F, 2.0 * head.V, edge).components, 0);  // one component
+    // Where the head leaves both eyes, these are counted: the smaller one of each pair.
+    Mesh left = eye;
+    left.V.col(0) *= -1.0;
+    const Mesh face = testing::joined(both, left);
+    Vertices moved = face.V;
+    moved.topRows(head.V.rows()).col(2).array() += 0.4;
+    EXPECT_EQ(partingOf(face.V, face.F, moved, edge).components, 2);
 }
 
 TEST(Contacts, MoveAlikeWhenDenoised) {
