@@ -86,8 +86,12 @@ def test_the_filter_fills_quality_and_colours_and_moves_nothing(decimated: Decim
     quality = mesh.vertex_scalar_array()
     assert quality.max() == report["maximum"]
     assert quality.min() >= 0
-    colours = mesh.vertex_color_matrix()
-    assert not np.array_equal(colours[quality.argmax()], colours[quality.argmin()])
+    part = quality / (0.1 * report["feature_size"])
+    assert part.max() > 0.5
+    colours = 255 * mesh.vertex_color_matrix()
+    for channel, levels in enumerate([(255, 253, 128), (255, 141, 0), (255, 60, 38)]):
+        expected = np.interp(part, [0, 0.5, 1], levels)  # white, orange, dark red
+        np.testing.assert_allclose(colours[:, channel], expected, rtol=0, atol=0.51)
     after = snapshot(mesh)
     for name in ("vertex_scalar_array", "vertex_color_matrix"):
         before.pop(name, None)

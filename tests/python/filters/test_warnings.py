@@ -270,8 +270,10 @@ def test_an_option_with_an_effect_is_not_reported(decimated: Decimated) -> None:
 
 def test_a_size_below_the_edges_is_a_warning(decimated: Decimated) -> None:
     V, F = decimated("bunny.obj", 500)
-    (warning,) = filter_mesh(V, F, feature_size="0.5e")[1]["warnings"]
+    report = filter_mesh(V, F, feature_size="0.5e")[1]
+    (warning,) = report["warnings"]
     assert "the mesh has no details of the feature size" in warning
+    assert f"Choose at least two edges, {2 * report['mean_edge']:.3g}; " in warning
     assert filter_mesh(V, F, feature_size="1.1e")[1]["warnings"] == []
 
 

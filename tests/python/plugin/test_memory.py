@@ -106,6 +106,18 @@ def test_every_function_keeps_to_the_limit(
         assert given_memory_limit() == size
 
 
+def test_a_mesh_set_keeps_to_the_limit_of_the_environment(
+    samples: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    meshes = loaded(samples / "cow.obj")
+    used = psutil.Process().memory_info().rss // MEBIBYTE
+    monkeypatch.setenv(MEMORY, f"{used // 2}MB")
+    assert f"raise the environment variable {MEMORY}" in refusal(meshes, steps=1)
+    for value in (f"{used + 2000}MB", f" {(used + 2000) / 1024:.2f} gib "):
+        monkeypatch.setenv(MEMORY, value)
+        meshes.apply_filter("apply_coord_spectral_filter_fractional", steps=1)
+
+
 def job(source: Path, folder: Path) -> dict[str, Any]:
     request = Request(source, FilterOptions(steps=1))
     return {"call": "filter_to_scratch", "request": request, "scratch": folder / "out.ply"}
