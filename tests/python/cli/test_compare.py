@@ -75,3 +75,11 @@ def test_the_picture_shows_both_meshes_and_the_deviation_in_colours(
     third = pixels.shape[1] // 3
     assert not saturation[:, : 2 * third].any()
     assert saturation[:, 2 * third :].mean() > 0.2
+
+
+def test_no_input_is_replaced_under_another_name(pair: tuple[Path, Path], tmp_path: Path) -> None:
+    other = tmp_path / "other.ply"
+    other.hardlink_to(pair[0])
+    refused = command("compare", *pair, "--output", other, "--overwrite")
+    assert refused.returncode == 2
+    assert "is an input itself and would be lost" in refused.stderr

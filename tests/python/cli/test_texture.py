@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import json
+import re
 from pathlib import Path
 
 import matplotlib.image
@@ -177,6 +178,10 @@ def test_many_files_are_one_table(rough: Path, tmp_path: Path) -> None:
     record = json.loads(command(*measure, "--json").stdout)
     assert len(record["files"]) == 2
     assert float(read[0]["Sq"]) == record["files"][0]["Sq"]
+    alone = succeeded("texture", rough, *measure[4:], "--smr", "0").stdout
+    share = re.search(r"Smr\(0\) .* ([0-9.]+) %", alone)
+    assert share
+    assert float(share[1]) == pytest.approx(100 * float(read[0]["Smr(0)"]), rel=1e-3)
     one = command("texture", rough, other, "--picture", tmp_path / "one.png")
     assert one.returncode == 2
     assert "name only one" in one.stderr

@@ -16,6 +16,8 @@ from meshlab_spectral.files.measures import mesh_info
 from meshlab_spectral.files.meshes import load_arrays
 from meshlab_spectral.files.request import Request
 from meshlab_spectral.filters.option_types import Options
+from meshlab_spectral.formats.placement import Placement, placement_of
+from meshlab_spectral.warned import Warned
 from numpy.typing import NDArray
 
 SMOOTH = FilterOptions(feature_size="30%")
@@ -91,3 +93,18 @@ def test_the_description_says_that_it_is_of_one_place(tmp_path: Path) -> None:
     assert not any(
         "placed" in one for one in mesh_info(Request(alone), lambda *stage: None)["warnings"]
     )
+
+
+def test_copies_are_where_the_first_place_would_be_taken_to() -> None:
+    own = np.random.default_rng(3).standard_normal((5, 3))
+    turned = trimesh.transformations.rotation_matrix
+    first, second = turned(0.7, [1, 2, 3]), turned(-1.9, [0, 1, -2])
+    first[:3, 3], second[:3, 3] = (1, 2, 3), (-5, 0, 4)
+    told: list[Warned] = []
+    placement = placement_of("ball", [first, second], told)
+    (copy,) = placement.copies
+    moved = Placement(copy).placed(placement.placed(own))
+    np.testing.assert_allclose(moved, Placement(second).placed(own), atol=1e-12)
+    assert not told
+    placement_of("ball", [first, second @ np.diag([1.001, 1, 1, 1])], told)
+    assert "at different scales" in told[0]

@@ -209,9 +209,9 @@ def test_interleaved_positions_are_replaced_where_they_are(tmp_path: Path) -> No
 def test_positions_that_are_not_plain_floats_get_a_new_accessor(kind: str, tmp_path: Path) -> None:
     asset, points = cube(), CUBE.copy()
     if kind == "quantized":
-        asset = cube((127 * CUBE - 10).astype("i1"))
+        asset = cube((255 * CUBE - 128).astype("i1"))
         asset.tree["accessors"][0]["normalized"] = True
-        points = np.maximum((127 * CUBE - 10) / 127, -1)
+        points = np.maximum((255 * CUBE - 128) / 127, -1)
     else:
         values = {"bufferView": asset.view((CUBE[:2] + 5).tobytes())}
         # The buffer ends at no multiple of 4; new floats begin at one.

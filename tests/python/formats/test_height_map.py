@@ -13,7 +13,8 @@ import surfalize
 from commands import command, succeeded
 from meshlab_spectral import MeshFileError, surface_texture
 from meshlab_spectral.formats.document import Array, Part
-from meshlab_spectral.formats.height_map import read
+from meshlab_spectral.formats.height_map import _surface, read
+from meshlab_spectral.formats.normals import area_vectors
 from rasterio.transform import Affine
 from scipy.ndimage import gaussian_filter
 
@@ -177,3 +178,16 @@ def test_a_map_becomes_a_mesh_and_is_never_written(tmp_path: Path) -> None:
     refusal = command("filter", path, tmp_path / "out.x3p")
     assert refusal.returncode == 2
     assert "out.x3p ends in .x3p, which MeshLab cannot write" in refusal.stderr
+
+
+@pytest.mark.parametrize(
+    ("columns", "rows"),
+    [((1, 0), (0, -1)), ((1, 0), (0, 1)), ((0, 1), (-1, 0)), ((0, 1), (1, 0)), ((1, 3), (2, 1))],
+)
+def test_faces_look_up_however_rows_and_columns_run(
+    columns: tuple[float, float], rows: tuple[float, float]
+) -> None:
+    (a, d), (b, e) = columns, rows
+    V, F = _surface(np.zeros((3, 4)), (a, b, 7.0, d, e, -2.0))
+    assert len(F) == 12
+    assert (area_vectors(V, F)[:, 2] > 0).all()

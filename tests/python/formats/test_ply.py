@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import re
 import struct
 from pathlib import Path
@@ -13,7 +14,9 @@ from hypothesis import strategies as st
 from meshlab_spectral.errors import MeshFileError
 from meshlab_spectral.formats.document import Array
 from meshlab_spectral.formats.names import shown
+from meshlab_spectral.formats.normals import following_normals
 from meshlab_spectral.formats.ply import PlyDocument, read
+from meshlab_spectral.formats.side_files import copy_side_files
 from plyfile import PlyData
 
 FORMATS = ("ascii", "binary_little_endian", "binary_big_endian")
@@ -311,6 +314,24 @@ def test_textures_are_copied_next_to_the_file_and_never_elsewhere(tmp_path: Path
     assert document.save(tmp_path / "in/scratch.ply", [document.parts[0].vertices]) == []
 
 
+def test_a_texture_of_the_same_size_and_time_is_another_file(tmp_path: Path) -> None:
+    source, target = tmp_path / "in" / "mesh.ply", tmp_path / "out" / "mesh.ply"
+    for path, content in ((source, b"red"), (target, b"tan")):
+        path.parent.mkdir()
+        skin = path.with_name("skin.png")
+        skin.write_bytes(content)
+        os.utime(skin, (1e9, 1e9))
+    (warning,) = copy_side_files(source, target, ["skin.png"])
+    assert "another file has that name" in warning
+
+
+@pytest.mark.parametrize("side", [1.0, -1.0])
+def test_a_normal_follows_a_face_that_turns_over(side: float) -> None:
+    V, up = np.array([[0.0, 0, 0], [1, 0, 0], [0, 1, 0]]), np.array([[0.0, 0, side]] * 3)
+    turned = following_normals(V, V * [1, -1, 1], np.array([[0, 1, 2]]), up)
+    np.testing.assert_array_equal(turned, -up)
+
+
 @pytest.mark.parametrize("format_", FORMATS)
 @pytest.mark.parametrize("is_last", [False, True])
 def test_lists_of_several_lengths_at_the_vertices_are_kept(
@@ -321,7 +342,7 @@ def test_lists_of_several_lengths_at_the_vertices_are_kept(
         return  # words before the coordinates of a text have to be as many in each row
     V = [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]]
     views = [list(range(k)) for k in (1, 3, 1, 2)]
-    names, list_ = [*(f"float {axis}" for axis in "xyz"), "uchar age"], "list uchar uint views"
+    names, list_ = ["float x", "double y", "float z", "uchar age"], "list uchar uint views"
     rows: list[list[object]] = [[*point, 4 + k] for k, point in enumerate(V)]
     for row, one in zip(rows, views, strict=True):
         row.insert(len(row) if is_last else 0, one)
