@@ -9,8 +9,6 @@ from dataclasses import dataclass, field, fields
 from numbers import Integral, Real
 from typing import Any, Literal, TypeVar
 
-import numpy as np
-
 from meshlab_spectral import _core
 from meshlab_spectral.errors import OptionError
 from meshlab_spectral.other_words import instead_of
@@ -199,7 +197,7 @@ class Options:
 def _plain(value: Any) -> Any:
     if isinstance(value, Length):
         return value.exactly
-    if isinstance(value, np.bool_):
+    if str(getattr(value, "dtype", "")) == "bool" and value.shape == ():  # without importing NumPy
         return bool(value)
     is_percentage = type(value).__name__ == "PercentageValue"  # of pymeshlab
     return f"{value.value()}%" if is_percentage else value

@@ -9,8 +9,6 @@ from collections.abc import Callable, Iterator
 from importlib.util import find_spec
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
 from meshlab_spectral.errors import OptionError
 
 if TYPE_CHECKING:
@@ -55,7 +53,8 @@ def _answered(progress: Progress) -> Progress:
 
     def update(stage: str, fraction: float) -> bool:
         answer = progress(stage, fraction)
-        return not isinstance(answer, (bool, np.bool_)) or bool(answer)
+        is_bool = isinstance(answer, bool) or str(getattr(answer, "dtype", "")) == "bool"
+        return not is_bool or bool(answer)
 
     return update
 
